@@ -12,8 +12,22 @@
 
 namespace treacle {
 
+namespace {
+
+/// Whether a body of the case is a rigid one.
+bool hasRigidBody(const toml::table& document) {
+  const toml::array* bodies = document["body"].as_array();
+  return bodies && std::ranges::any_of(*bodies, [](const toml::node& body) {
+           const toml::table* table = body.as_table();
+           return table && (*table)["type"].value<std::string_view>() == "rigid";
+         });
+}
+
+}  // namespace
+
 /// The method, on which the keys of other tables depend, is read before them; whether there is heat, likewise.
 void TableReader::prepare(Case& c) {
+  if (hasRigidBody(section_.table())) c.method.pressureRadius = radiusAroundBodies;
   (*this)({"method", "Numerical method"}, c.method);
   if (c.method.kind != MethodKind::MphI)
     for (const auto& [key, text] : {std::pair("heat", heatOfMphI), std::pair("rheology", rheologyOfMphI)})
@@ -25,7 +39,7 @@ void TableReader::prepare(Case& c) {
 void TableReader::prepare(MethodSettings& method) {
   (*this)({"name", "Numerical method"}, method.kind);
   if (method.kind == MethodKind::MphI)
-    if (const auto scheme = lookUp<SchemeKind>("scheme")) method = defaultMethod(*scheme);
+    if (lookUp<SchemeKind>("scheme") == SchemeKind::Published) method = defaultMethod(SchemeKind::Published);
   nameMethod();
 }
 

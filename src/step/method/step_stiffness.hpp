@@ -35,7 +35,7 @@ class StepStiffness final : public ForcesAround<D, Backend> {
                        rheology ? rheology->rates() : std::span<const double>{},
                        std::span<const double>(state.particles.pressure).first(own), viscosity_.span()});
     this->setActing(fluid.particles > 0);
-    way_ = fluid.way;
+    way_ = fluid.way / limits_.most;
   }
 
   /// In cases with rigid bodies: the velocities of now, before their walls take those that the step tries. These
@@ -49,7 +49,7 @@ class StepStiffness final : public ForcesAround<D, Backend> {
 
   /// Both viscosities together after scale(), per own particle [Pa s].
   std::span<const double> sum() const { return sum_; }
-  /// How far pressures carry particles in the step, in the mean, in spacings.
+  /// How far pressures carry particles in the step, in the mean, over the way that needs no such viscosity.
   double way() const { return way_; }
   /// The additional viscosity per own particle [Pa s].
   std::span<const double> viscosity() const { return viscosity_; }

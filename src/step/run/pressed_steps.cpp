@@ -7,9 +7,9 @@
 namespace treacle {
 namespace {
 
-constexpr double mostWay = 1, harmlessWay = 0.2;  // of pressed particles, in spacings
-constexpr double restsBelow = 0.05;               // way of the fastest particle, in spacings
-constexpr double leastShare = 0.02;               // of the steps of a run: impacts press for a moment
+constexpr double mostWay = 2.5, harmlessWay = 0.5;  // of pressed particles, over what they bear
+constexpr double restsBelow = 0.05;                 // way of the fastest particle, in spacings
+constexpr double leastShare = 0.02;                 // of the steps of a run: impacts press for a moment
 
 }  // namespace
 
@@ -18,11 +18,11 @@ void PressedSteps::look(const Case& c, double way, double fastest, std::vector<s
   if (++count_ * c.time.step < leastShare * c.time.end) return;
   warned_ = true;
   warnings.push_back(fmt::format(
-      "steps of {:g} s are long for the pressure, which could carry particles by {:.2g} spacings in "
-      "each: "
-      "fluid that shears is held back by 15 % or more; take time.step <= {:.2g}, or time.step = \"auto\"; further "
-      "steps are not reported",
-      c.time.step, way, harmlessWay / way * c.time.step));
+      "steps of {:g} s are long for the pressure, which could carry particles {:.1f} times as far in each as they "
+      "bear: fluid that shears is held back by 15 % or more; take time.step <= {:.2g}{}, or time.step = \"auto\"; "
+      "further steps are not reported",
+      c.time.step, way, harmlessWay / way * c.time.step,
+      c.method.pressureRadius < 3.5 ? ", method.pressure_radius = 3.5, which bears ten times the step" : ""));
 }
 
 }  // namespace treacle

@@ -10,7 +10,7 @@ constexpr double safety = 0.9;  // of the step that the tolerance would just all
 constexpr double mostGrowth = 2, leastShare = 0.1;
 constexpr double stepsPerOctave = 4;  // planned steps are the longest one times 2^(-k / stepsPerOctave)
 constexpr double shareAfterFailure = 0.25;
-constexpr double mostWay = 10;       // of pressed particles, in spacings, over the tolerance
+constexpr double mostWay = 25;       // of pressed particles, over what they bear and the tolerance
 constexpr double restsBelow = 1e-3;  // way of fluid in a step, in spacings
 
 }  // namespace

@@ -50,7 +50,8 @@ class StepMethod {
   virtual std::vector<WallLoad> loads() const { return {}; }
   /// The pressure on the patch of each probe WallPressure in that step [Pa].
   virtual std::vector<double> patchPressures() const { return {}; }
-  /// How far pressures carry particles in the step at hand, in the mean, in spacings; 0 where they keep nothing.
+  /// How far pressures carry particles in the step at hand, in the mean, over what they bear
+  /// (StiffnessLimits::most); 0 where they keep nothing.
   virtual double pressedWay() const { return 0; }
   /// Completes what the diagnostics of a step are made of.
   virtual void describe(DiagnosticsInput<D>&) const {}

@@ -210,11 +210,11 @@ TEST(StepControl, MeetsFramesAndTheEndExactlyByEqualSteps) {
 TEST(StepControl, KeepsToWhatPressedParticlesBear) {
   const StepControl control(automaticCase(0.02, 1, 1000));
   StepMemory memory{.last = 0.25, .planned = 0.25, .rate = 1e-9};
-  ASSERT_TRUE(control.accept(0.25, 0, 0.8, memory));
-  EXPECT_EQ(memory.planned, 0.0625) << "a way of 0.2 spacings";
-  ASSERT_TRUE(control.accept(0.0625, 0, 0.2, memory));
+  ASSERT_TRUE(control.accept(0.25, 0, 2, memory));
+  EXPECT_EQ(memory.planned, 0.0625) << "half of what they bear";
+  ASSERT_TRUE(control.accept(0.0625, 0, 0.5, memory));
   EXPECT_EQ(memory.planned, 0.0625);
-  ASSERT_TRUE(control.accept(0.0625, 0, 0.05, memory));
+  ASSERT_TRUE(control.accept(0.0625, 0, 0.125, memory));
   EXPECT_EQ(memory.planned, 0.125);
   EXPECT_FALSE(control.flows(0.9e-3 * spacing / 0.1, 0.1));
   EXPECT_TRUE(control.flows(1.1e-3 * spacing / 0.1, 0.1));

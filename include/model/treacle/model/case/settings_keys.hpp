@@ -60,7 +60,9 @@ void visit(auto& v, Like<MethodSettings> auto& m, const Case& c) {
      "Formulas that converge, or those of the papers [K23], [O23]; for MPH-I it sets defaults of the radii"},
     m.scheme);
   if (c.method.kind == MethodKind::Isph) return visit(v, m.isph, c);
-  v({"pressure_radius", "Radius h_p of divergence and pressure gradient", optional, "spacings", radius},
+  v({"pressure_radius",
+     "Radius h_p of divergence and pressure gradient; 3.5 with rigid bodies in the accurate scheme", optional,
+     "spacings", radius},
     m.pressureRadius);
   v({"density_radius",
      "Radius h_n of the number density; where it is less than pressure_radius it is that",

@@ -25,8 +25,8 @@ class StepControl {
   double error(const StepChange&, double length, const StepMemory&) const;
 
   /// Whether a step counts: one that is exact enough or cannot be shorter. It is then the last one of the memory;
-  /// else a shorter one is planned. `way`: how far pressures carry particles in it, in spacings, which bounds the
-  /// next step; zero where that does not matter.
+  /// else a shorter one is planned. `way`: how far pressures carry particles in it, over what they bear, which
+  /// bounds the next step; zero where that does not matter.
   bool accept(double length, double error, double way, StepMemory&) const;
   /// Whether fluid that goes at `speed` [m/s] in the mean flows in a step of `length` [s], and does not rest.
   bool flows(double speed, double length) const;
