@@ -24,6 +24,9 @@ inline constexpr const char* rheologyOfMphI =
 
 /// The method of a case that says no more than its scheme.
 MethodSettings defaultMethod(SchemeKind scheme);
+/// h_p / l of the accurate scheme where a case has rigid bodies and does not give it: the pressure around a body
+/// would hold it back with the shorter one (docs/rigid-bodies.md).
+inline constexpr double radiusAroundBodies = 3.5;
 
 /// The solver of a case that says no more than its method, or no more than that and the preconditioner.
 SolverSettings defaultSolver(MethodKind method);

@@ -56,10 +56,6 @@ struct MethodSettings {
   bool operator==(const MethodSettings&) const = default;
 };
 
-/// h_p / l of the accurate scheme where a case has rigid bodies and does not give it: the pressure around a body
-/// would hold it back with the shorter one (docs/rigid-bodies.md).
-inline constexpr double radiusAroundBodies = 3.5;
-
 /// How the viscosity of fluids with a rheology and the flow of a step are brought together.
 struct RheologySettings {
   int iterations = 10;      // largest number of solves in a step
