@@ -3,6 +3,7 @@
 #include "method/mph_solver.hpp"
 #include "treacle/isph/isph_pairs.hpp"
 #include "treacle/isph/isph_sums.hpp"
+#include "treacle/model/case/case_keys.hpp"
 #include "treacle/model/case/flow_scales.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/step/method/solve_stages.hpp"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace treacle {
@@ -81,6 +83,19 @@ bool mayTakeLongSteps(const Case& c) {
       c.materials, [&](const Material& m) { return additionalViscosity(c, m, pressureOfWeight(c, m)) > 0; });
 }
 
+/// For each neighbour within the radius of pressures beyond those of the default radius, as measured at floating
+/// blocks and at spheres that settle.
+constexpr Bytes perNearNeighbour{34, 10};
+
+/// So many neighbours, of a particle in a full neighbourhood.
+template <int D>
+double neighboursBeyondDefault(const Case& c) {
+  const auto within = [](double radius) {
+    return D == 2 ? std::numbers::pi * radius * radius : 4 * std::numbers::pi / 3 * radius * radius * radius;
+  };
+  return within(c.method.pressureRadius) - within(defaultMethod(c.method.scheme).pressureRadius);
+}
+
 template <int D>
 StepBytes mphBytes(const Case& c, BackendKind backend) {
   const SolverSettings& s = c.solver;
@@ -90,6 +105,7 @@ StepBytes mphBytes(const Case& c, BackendKind backend) {
              products = onDevice && buckets && s.multigrid.coarseOperators == CoarseKind::Spgemm;
   const MphBytes& of = accurate ? (D == 2 ? accurate2 : accurate3) : (D == 2 ? published2 : published3);
   StepBytes bytes{(projected ? of.projected : buckets ? of.buckets : of.local).on(backend)};
+  bytes.fluid += neighboursBeyondDefault<D>(c) * perNearNeighbour.on(backend);
   if (c.hasSurfaceTension()) bytes.fluid += D == 2 ? 200 : 350;
   if (c.hasOwnViscosities()) bytes.fluid += c.hasVolumeFactors() ? 78 : 70;
   if (mayTakeLongSteps(c)) bytes.fluid += 8 * (D * D + D * (D + 1) / 2 + D) + 25;  // StepStiffness
