@@ -378,42 +378,6 @@ std::string mostBulkModulusText(const Case& c) {
   return mostCompression(c) == 1 ? "bulk_viscosity / step" : "0.5 bulk_viscosity / step";
 }
 
-/// Automatic steps are at most this part of the time in which heat goes through the fluid.
-constexpr double shareOfConduction = 0.003;
-
-StableStep longestStableStep(const Case& c) {
-  StableStep stable{std::numeric_limits<double>::infinity(), "nothing"};
-  const auto bound = [&](double length, std::string reason) {
-    if (length < stable.length) stable = {length, std::move(reason)};
-  };
-  for (const Material& m : c.materials)
-    if (m.bulkModulus > 0 && m.bulkViscosity > 0)  // without the latter no step is
-      bound(mostCompression(c) * m.bulkViscosity / m.bulkModulus,
-            fmt::format("dt kappa / lambda of '{}'", m.name));
-  if (c.heat && c.time.automatic) {  // the error of a step does not see temperatures
-    const double length = flowScales(c).length;
-    for (const Material& m : c.materials)
-      if (m.conductivity > 0 && m.specificHeat > 0 && length > 0)
-        bound(shareOfConduction * m.density * m.specificHeat * length * length / m.conductivity,
-              fmt::format("the conduction of heat in '{}'", m.name));
-  }
-  for (const Body& body : c.bodies) {
-    if (body.kind != BodyKind::Fluid || norm(c.gravity) == 0) continue;
-    if (const double p = weightOn(c, body, true); p > 0)
-      bound(longestCarryingStep(c, materialOf(c, body), p), fmt::format("the heavier fluid on '{}'", body.name));
-  }
-  return stable;
-}
-
-void setStepBounds(Case& c) {
-  TimeSettings& t = c.time;
-  if (!t.automatic) return;
-  if (t.step == 0) t.step = std::min(longestStableStep(c).length, t.end);
-  if (t.least == 0) t.least = defaultLeastStep(t);
-}
-
-double defaultLeastStep(const TimeSettings& t) { return t.step / 1e4; }
-
 std::vector<std::string> caseWarnings(const Case& c) {
   std::vector<std::string> warnings;
   warnCompression(c, warnings);

@@ -9,9 +9,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace treacle {
 namespace {
+
+/// Automatic steps are at most this part of the time in which heat goes through the fluid.
+constexpr double shareOfConduction = 0.003;
 
 /// The Courant number of the longest step that a run makes.
 double courantNumberAt(const Case& c, double speed) {
@@ -72,5 +78,38 @@ void warnViscousSteps(const Case& c, std::vector<std::string>& warnings) {
       "with 10; take method.name = \"mph-i\", or {} <= {:.2g}",
       c.time.step, number, material, c.time.stepKey(), c.spacing * c.spacing / most));
 }
+
+StableStep longestStableStep(const Case& c) {
+  StableStep stable{std::numeric_limits<double>::infinity(), "nothing"};
+  const auto bound = [&](double length, std::string reason) {
+    if (length < stable.length) stable = {length, std::move(reason)};
+  };
+  for (const Material& m : c.materials)
+    if (m.bulkModulus > 0 && m.bulkViscosity > 0)  // without the latter no step is
+      bound(mostCompression(c) * m.bulkViscosity / m.bulkModulus,
+            fmt::format("dt kappa / lambda of '{}'", m.name));
+  if (c.heat && c.time.automatic) {  // the error of a step does not see temperatures
+    const double length = flowScales(c).length;
+    for (const Material& m : c.materials)
+      if (m.conductivity > 0 && m.specificHeat > 0 && length > 0)
+        bound(shareOfConduction * m.density * m.specificHeat * length * length / m.conductivity,
+              fmt::format("the conduction of heat in '{}'", m.name));
+  }
+  for (const Body& body : c.bodies) {
+    if (body.kind != BodyKind::Fluid || norm(c.gravity) == 0) continue;
+    if (const double p = weightOn(c, body, true); p > 0)
+      bound(longestCarryingStep(c, materialOf(c, body), p), fmt::format("the heavier fluid on '{}'", body.name));
+  }
+  return stable;
+}
+
+void setStepBounds(Case& c) {
+  TimeSettings& t = c.time;
+  if (!t.automatic) return;
+  if (t.step == 0) t.step = std::min(longestStableStep(c).length, t.end);
+  if (t.least == 0) t.least = defaultLeastStep(t);
+}
+
+double defaultLeastStep(const TimeSettings& t) { return t.step / 1e4; }
 
 }  // namespace treacle

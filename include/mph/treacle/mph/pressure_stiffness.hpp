@@ -26,7 +26,7 @@ struct StiffMaterials {
   static StiffMaterials make(const Case& c);
 };
 
-/// Of all fluid, over all processes.
+/// What setStiffness() finds of the fluid of all processes.
 struct StiffFluid {
   double particles;  // that have such a viscosity
   double way;        // how far the pressure carries a particle in the step, in the mean, in spacings
