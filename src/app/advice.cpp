@@ -103,8 +103,7 @@ void printBulk(const Case& c, const Material& m, const FlowScales& flow) {
   if (c.time.automatic && least > 0)
     modulus = fmt::format(
         ", bulk_modulus of at least {:.3g} (compressed by 1 %); steps may then be as long as {:g} bulk_viscosity "
-        "/ "
-        "bulk_modulus",
+        "/ bulk_modulus",
         least, mostCompression(c));
   else if (!c.time.automatic && least == 0)
     modulus = fmt::format(", bulk_modulus of at most {:.3g} (stable with both)", most);

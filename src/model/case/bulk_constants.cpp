@@ -113,7 +113,7 @@ bool adaptBulkConstants(const Case& c, const FluidDensity& is, double dt, bool i
   const bool helped = memory.excess == 0 || (memory.modulus > 1 && excess < 0.9 * memory.excess);
   if (excess <= (memory.rest == 0 && helped ? mostExcess : std::max(mostExcess, 1.2 * memory.excess)))
     return false;
-  if (is.compression < leastCompression * excess) return false;
+  if (!(is.compression >= leastCompression * excess)) return false;
   const double stable = shareOfStable * mostCompression(c) / c.time.step;
   double rate = 0;  // kappa / lambda [1/s]
   for (const Material& m : c.materials)

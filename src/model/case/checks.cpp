@@ -4,6 +4,7 @@
 #include "long_steps.hpp"
 #include "particles/body_points.hpp"
 #include "particles/fluid_extent.hpp"
+#include "treacle/model/case/bulk_constants.hpp"
 #include "treacle/model/case/flow_scales.hpp"
 #include "treacle/model/case/names.hpp"
 #include "treacle/model/geometry/shape.hpp"
@@ -18,8 +19,6 @@
 
 namespace treacle {
 namespace {
-
-bool wholeNumber(double x) { return std::abs(x - std::round(x)) <= rounding * std::max(1.0, std::abs(x)); }
 
 /// That of a polygon or mesh that is not all of the inside; 0 stands for what is needed.
 double layerThickness(const Shape& s) {
@@ -98,7 +97,8 @@ void warnLargeBulkViscosity(const Case& c, std::vector<std::string>& warnings) {
     const std::string cause = follows ? fmt::format(", which steps of {:.3g} s need with bulk_modulus = {:.3g} Pa",
                                                     c.time.step, m.bulkModulus)
                                       : "";
-    std::string advice = fmt::format("bulk_viscosity = {:.3g}, 1000 times the viscosity", 1000 * mu);
+    std::string advice = fmt::format("bulk_viscosity = {:.3g}, {:g} times the viscosity",
+                                     recommendedBulkRatio * mu, recommendedBulkRatio);
     if (follows && modulus > 0 && modulus < m.bulkModulus)
       advice = fmt::format("bulk_modulus = {:.2g}, with which pressures compress it by 0.1 %, or leave it out",
                            modulus);
@@ -345,18 +345,6 @@ void warnSprings(const Case& c, std::vector<std::string>& warnings) {
       if (s.stiffness == 0 && s.damping == 0)
         warnings.push_back(fmt::format(
             "spring '{}' of body '{}' is without effect: its stiffness and damping are 0", s.name, body.name));
-}
-
-void warnTimes(const Case& c, std::vector<std::string>& warnings) {
-  if (!wholeNumber(c.time.end / c.time.step))
-    warnings.push_back(fmt::format(
-        "time.end = {:g} s is not a whole number of steps of {:g} s; the run makes {} steps and ends at {:.6g} s",
-        c.time.end, c.time.step, c.steps(), static_cast<double>(c.steps()) * c.time.step));
-  if (c.output.interval > 0 && !wholeNumber(c.output.interval / c.time.step))
-    warnings.push_back(
-        fmt::format("output.interval = {:g} s is not a whole number of steps of {:g} s; frames are written at "
-                    "the nearest step",
-                    c.output.interval, c.time.step));
 }
 
 }  // namespace

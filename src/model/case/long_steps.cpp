@@ -16,6 +16,8 @@
 namespace treacle {
 namespace {
 
+bool wholeNumber(double x) { return std::abs(x - std::round(x)) <= rounding * std::max(1.0, std::abs(x)); }
+
 /// Automatic steps are at most this part of the time in which heat goes through the fluid.
 constexpr double shareOfConduction = 0.003;
 
@@ -77,6 +79,18 @@ void warnViscousSteps(const Case& c, std::vector<std::string>& warnings) {
       "viscous fluid slip along walls, and fronts come out too far, by some 10 % with 2.5 and 20 % "
       "with 10; take method.name = \"mph-i\", or {} <= {:.2g}",
       c.time.step, number, material, c.time.stepKey(), c.spacing * c.spacing / most));
+}
+
+void warnTimes(const Case& c, std::vector<std::string>& warnings) {
+  if (!wholeNumber(c.time.end / c.time.step))
+    warnings.push_back(fmt::format(
+        "time.end = {:g} s is not a whole number of steps of {:g} s; the run makes {} steps and ends at {:.6g} s",
+        c.time.end, c.time.step, c.steps(), static_cast<double>(c.steps()) * c.time.step));
+  if (c.output.interval > 0 && !wholeNumber(c.output.interval / c.time.step))
+    warnings.push_back(
+        fmt::format("output.interval = {:g} s is not a whole number of steps of {:g} s; frames are written at "
+                    "the nearest step",
+                    c.output.interval, c.time.step));
 }
 
 StableStep longestStableStep(const Case& c) {

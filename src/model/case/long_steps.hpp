@@ -7,7 +7,8 @@
 
 namespace treacle {
 
-// Warnings of time steps that are too long for what a case says.
+// Warnings of time steps that do not fit what a case says. The source has the bounds of automatic steps, too
+// (checks.hpp).
 
 /// The forces of MPH-I are implicit but for gravity; ISPH moves on what it has at the start of a step. How fast a
 /// viscous fluid falls nobody knows before, so with MPH-I the speeds that the case gives count alone.
@@ -15,6 +16,9 @@ void warnCourant(const Case& c, std::vector<std::string>& warnings);
 
 /// Steps that are longer than a twentieth of an oscillation miss much of it.
 void warnOscillations(const Case& c, std::vector<std::string>& warnings);
+
+/// Equal steps that do not meet the times of frames or the end.
+void warnTimes(const Case& c, std::vector<std::string>& warnings);
 
 /// Implicit viscous steps of ISPH, longer than l^2/nu. In a step pressures change velocities after viscosity has,
 /// so fluid slips along walls by dt |grad p| / rho; and near free surfaces a part of the viscous stress is that of
