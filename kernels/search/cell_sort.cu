@@ -20,19 +20,18 @@ void findFluidKeys(Context<Cuda>& context, const CellGrid<D>& grid, const Partic
           });
 }
 
-/// One thread per wall particle; reads its position and whether its cell is near fluid, writes its key and index;
-/// atomics no.
+/// One thread per wall particle; reads its position and whether walls in its cell are active, writes its key and
+/// index; atomics no.
 template <int D>
 void findWallKeys(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& particles,
                   SortWorkspace<Cuda>& w) {
   const std::uint64_t inactive = std::uint64_t{1} << keyBits(grid);
   forEach(context, particles.wallCount(),
           [grid, inactive, fluid = particles.fluidCount, position = particles.position.data(),
-           hasFluid = w.hasFluid.data(), key = w.key.data(), index = w.index.data()] __device__(std::size_t wall) {
+           active = w.active.data(), key = w.key.data(), index = w.index.data()] __device__(std::size_t wall) {
             const std::size_t i = fluid + wall;
             const Vec<D> x = position[i];
-            const bool active = hasFluid[grid.linear(grid.cellOf(x))];
-            key[i] = grid.key(x) | (active ? 0 : inactive);
+            key[i] = grid.key(x) | (active[grid.linear(grid.cellOf(x))] ? 0 : inactive);
             index[i] = static_cast<std::uint32_t>(i);
           });
 }
@@ -82,7 +81,7 @@ void sortByCell(Context<Cuda>& context, const CellGrid<D>& grid, Particles<D, Cu
   sortGroup(context, 0, fluid, bits, w, ranges.key.data());
   fillRanges(context, grid, {0, fluid, ranges.key.data(), w.sortedIndex.data(), bits}, position, ranges.fluidBegin,
              ranges.fluidEnd, w.count.data());
-  markCellsNearFluid(context, grid, ranges.fluidEnd.data(), w.hasFluid);
+  markActiveCells(context, grid, particles, ranges.fluidEnd.data(), w);
 
   findWallKeys(context, grid, particles, w);
   sortGroup(context, fluid, count, bits + 1, w, w.sortedKey.data());

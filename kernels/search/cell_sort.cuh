@@ -2,6 +2,7 @@
 
 #include "core/launch.hpp"
 #include "treacle/search/cell_sort.hpp"
+#include "treacle/search/touching_cells.hpp"
 
 #include <span>
 
@@ -66,17 +67,37 @@ void fillRanges(Context<Cuda>& context, const CellGrid<D>& grid, const SortedGro
   });
 }
 
-/// One thread per cell; reads whether the adjacent cells have fluid (their `fluid` is not 0), writes whether any
-/// has; atomics no.
+/// One thread per wall particle; reads its position and body; atomic "or" to the word of its cell.
+template <int D>
+void addBodies(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& p, const BodySet& rigid,
+               std::uint32_t* words) {
+  forEach(context, p.wallCount(),
+          [grid, rigid, words, position = p.position.data() + p.wallBegin(),
+           body = p.body.data() + p.wallBegin()] __device__(std::size_t i) {
+            const Vec<D> x = position[i];
+            if (isFinitePosition(x))
+              atomicOr(&words[grid.linear(grid.cellOf(x))], wordOfBody(body[i], rigid.has(body[i])));
+          });
+}
+
+/// Finds w.active. One thread per cell; reads whether it and the adjacent cells have fluid (their `fluid` is not
+/// 0), and which bodies; atomics no.
 template <int D, class Flag>
-void markCellsNearFluid(Context<Cuda>& context, const CellGrid<D>& grid, const Flag* fluid,
-                        Buffer<std::uint8_t, Cuda>& hasFluid) {
-  hasFluid.resize(context, grid.cellCount());
-  forEach(context, grid.cellCount(), [grid, fluid, near = hasFluid.data()] __device__(std::size_t cell) {
-    bool any = false;
-    forEachAdjacentCell(grid, grid.cellAt(cell),
-                        [&](const Vec<D, int>& c) { any = any || fluid[grid.linear(c)] > 0; });
-    near[cell] = any;
+void markActiveCells(Context<Cuda>& context, const CellGrid<D>& grid, const Particles<D, Cuda>& p,
+                     const Flag* fluid, SortWorkspace<Cuda>& w) {
+  w.active.resize(context, grid.cellCount());
+  const std::uint32_t* words = nullptr;
+  if (const BodySet rigid = rigidBodies(p.rigid); !rigid.isEmpty()) {
+    w.bodies.resize(context, grid.cellCount());
+    clearBytes(context, w.bodies.data(), w.bodies.size() * sizeof(std::uint32_t));
+    addBodies(context, grid, p, rigid, w.bodies.data());
+    words = w.bodies.data();
+  }
+  forEach(context, grid.cellCount(), [grid, fluid, words, active = w.active.data()] __device__(std::size_t cell) {
+    const Vec<D, int> at = grid.cellAt(cell);
+    bool any = words && mayTouchAround(grid, words, at);
+    forEachAdjacentCell(grid, at, [&](const Vec<D, int>& c) { any = any || fluid[grid.linear(c)] > 0; });
+    active[cell] = any;
   });
 }
 

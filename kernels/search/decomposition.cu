@@ -111,7 +111,7 @@ void Decomposition<D, Cuda>::sort(Context<Cuda>& context, const CellGrid<D>& gri
   const std::uint32_t own = p.fluidCount;
   fillRanges(context, grid, {0, own, ranges.key.data(), w.sortedIndex.data(), keyBits(grid)}, p.position.data(),
              ranges.fluidBegin, ranges.fluidEnd, w.count.data());
-  findActiveCells(context, grid, ranges, w);
+  findActiveCells(context, grid, p, ranges, w);
   this->startHalo(job, own);
   listSentFluid(context, ranges, w);
   this->countGhostFluid(job);

@@ -29,20 +29,19 @@ void findWallKeys(Context<Cuda>& context, const CellGrid<D>& grid, const Particl
                   const CellOwnersView& owners, SortWorkspace<Cuda>& w) {
   const int bits = keyBits(grid);
   const std::uint64_t inactive = std::uint64_t{1} << rankBits(*context.communicator);
-  forEach(context, p.wallCount(),
-          [grid, bits, inactive, owners, begin = p.wallBegin(), position = p.position.data(),
-           hasFluid = w.hasFluid.data(), key = w.key.data() + p.fluidCount,
-           index = w.index.data() + p.fluidCount] __device__(std::size_t wall) {
-            const std::size_t i = begin + wall;
-            const Vec<D> x = position[i];
-            const std::size_t cell = grid.linear(grid.cellOf(x));
-            std::uint64_t group = inactive;
-            if (hasFluid[cell] && owners.isOwn(cell)) group = 0;
-            if (hasFluid[cell] && owners.isBesideOwn(cell))
-              group = 1 + static_cast<std::uint64_t>(owners.owner[cell]);
-            key[wall] = grid.key(x) | group << bits;
-            index[wall] = static_cast<std::uint32_t>(i);
-          });
+  forEach(
+      context, p.wallCount(),
+      [grid, bits, inactive, owners, begin = p.wallBegin(), position = p.position.data(), active = w.active.data(),
+       key = w.key.data() + p.fluidCount, index = w.index.data() + p.fluidCount] __device__(std::size_t wall) {
+        const std::size_t i = begin + wall;
+        const Vec<D> x = position[i];
+        const std::size_t cell = grid.linear(grid.cellOf(x));
+        std::uint64_t group = inactive;
+        if (active[cell] && owners.isOwn(cell)) group = 0;
+        if (active[cell] && owners.isBesideOwn(cell)) group = 1 + static_cast<std::uint64_t>(owners.owner[cell]);
+        key[wall] = grid.key(x) | group << bits;
+        index[wall] = static_cast<std::uint32_t>(i);
+      });
 }
 
 /// One thread per rank and one for the end; reads sorted keys, writes where the ghosts among the walls that are
@@ -77,10 +76,11 @@ void listBorders(Context<Cuda>& context, std::span<const std::uint32_t> cell, co
 /// Whether walls of a cell are active is for its owner to see as for all who have them as ghosts.
 template <int D>
 void Decomposition<D, Cuda>::findActiveCells(Context<Cuda>& context, const CellGrid<D>& grid,
-                                             const CellRanges<Cuda>& ranges, SortWorkspace<Cuda>& w) {
+                                             const Particles<D, Cuda>& p, const CellRanges<Cuda>& ranges,
+                                             SortWorkspace<Cuda>& w) {
   markCellsWithFluid(context, ranges.fluidEnd, fluidCells_);
   context.link->max(fluidCells_.data(), fluidCells_.size());
-  markCellsNearFluid(context, grid, fluidCells_.data(), w.hasFluid);
+  markActiveCells(context, grid, p, fluidCells_.data(), w);
 }
 
 template <int D>
@@ -144,7 +144,8 @@ void Decomposition<D, Cuda>::sortWalls(Context<Cuda>& context, const CellGrid<D>
 
 #define TREACLE_INSTANTIATE(D)                                                                                   \
   template void Decomposition<D, Cuda>::findActiveCells(Context<Cuda>&, const CellGrid<D>&,                      \
-                                                        const CellRanges<Cuda>&, SortWorkspace<Cuda>&);          \
+                                                        const Particles<D, Cuda>&, const CellRanges<Cuda>&,      \
+                                                        SortWorkspace<Cuda>&);                                   \
   template void Decomposition<D, Cuda>::listSentFluid(Context<Cuda>&, const CellRanges<Cuda>&,                   \
                                                       SortWorkspace<Cuda>&);                                     \
   template void Decomposition<D, Cuda>::sortWalls(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&, \

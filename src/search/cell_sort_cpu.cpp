@@ -1,21 +1,6 @@
 #include "sort_groups.hpp"
 
 namespace treacle {
-namespace {
-
-template <int D>
-void markCellsNearFluid(const CellGrid<D>& grid, const CellRanges<>& ranges, const Particles<D>& particles,
-                        Buffer<std::uint8_t>& hasFluid) {
-  hasFluid.resize(grid.cellCount());
-  std::fill(hasFluid.begin(), hasFluid.end(), std::uint8_t{0});
-  for (std::uint32_t i = 0; i < particles.fluidCount; ++i) {
-    const Vec<D, int> cell = grid.cellOf(particles.position[i]);
-    if (ranges.fluidBegin[grid.linear(cell)] == i)
-      forEachAdjacentCell(grid, cell, [&](const Vec<D, int>& c) { hasFluid[grid.linear(c)] = 1; });
-  }
-}
-
-}  // namespace
 
 template <int D>
 void sortByCell(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles, CellRanges<>& ranges,
@@ -35,12 +20,13 @@ void sortByCell(Context<Cpu>&, const CellGrid<D>& grid, Particles<D>& particles,
   ranges.key.resize(fluid);
   for (std::uint32_t i = 0; i < fluid; ++i) ranges.key[i] = keyed[i].key;
   fillRanges<D>(grid, particles.position, 0, fluid, ranges.fluidBegin, ranges.fluidEnd);
-  markCellsNearFluid(grid, ranges, particles, workspace.hasFluid);
+  markActiveCells(
+      grid, particles, [&](std::size_t cell) { return ranges.fluidEnd[cell] > 0; }, workspace);
 
   parallelFor(count - fluid, parallelGrain, [&](std::size_t wall) {
     const auto i = static_cast<std::uint32_t>(fluid + wall);
     const Vec<D>& x = particles.position[i];
-    const bool active = workspace.hasFluid[grid.linear(grid.cellOf(x))];
+    const bool active = workspace.active[grid.linear(grid.cellOf(x))];
     keyed[i] = {grid.key(x) | (active ? 0 : inactiveKey), i};
   });
   sortGroup(particles, fluid, count, workspace, before);

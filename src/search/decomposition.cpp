@@ -22,7 +22,7 @@ void Decomposition<D, Cpu>::sort(Context<Cpu>& context, const CellGrid<D>& grid,
   migrate(job, grid, p);
   sortFluid(grid, p, ranges, workspace);
   const std::uint32_t own = p.fluidCount;
-  findActiveCells(job, grid, p.position.span().first(own), workspace);
+  findActiveCells(job, grid, p, workspace);
 
   this->startHalo(job, own);
   listSent(grid, p.position, 0, own, halo_.sentFluid, &Halo<Cpu>::Neighbour::sentFluid);

@@ -37,17 +37,13 @@ void Decomposition<D, Cpu>::sortFluid(const CellGrid<D>& grid, Particles<D>& p, 
 /// Whether walls of a cell are active is for its owner to see as for all who have them as ghosts.
 template <int D>
 void Decomposition<D, Cpu>::findActiveCells(const Communicator& job, const CellGrid<D>& grid,
-                                            std::span<const Vec<D>> fluid, SortWorkspace<>& workspace) {
+                                            const Particles<D>& p, SortWorkspace<>& workspace) {
   fluidCells_.resize(grid.cellCount());
   std::fill(fluidCells_.begin(), fluidCells_.end(), std::uint8_t{0});
-  for (const Vec<D>& x : fluid) fluidCells_[cellAt(grid, x)] = 1;
+  for (std::uint32_t i = 0; i < p.fluidCount; ++i) fluidCells_[cellAt(grid, p.position[i])] = 1;
   job.anyOf(fluidCells_);
-  workspace.hasFluid.resize(grid.cellCount());
-  std::fill(workspace.hasFluid.begin(), workspace.hasFluid.end(), std::uint8_t{0});
-  for (std::size_t cell = 0; cell < fluidCells_.size(); ++cell)
-    if (fluidCells_[cell])
-      forEachAdjacentCell(grid, grid.cellAt(cell),
-                          [&](const Vec<D, int>& c) { workspace.hasFluid[grid.linear(c)] = 1; });
+  markActiveCells(
+      grid, p, [&](std::size_t cell) { return fluidCells_[cell] != 0; }, workspace);
 }
 
 template <int D>
@@ -59,7 +55,7 @@ void Decomposition<D, Cpu>::sortWalls(const CellGrid<D>& grid, Particles<D>& p, 
   parallelFor(count - begin, parallelGrain, [&](std::size_t wall) {
     const auto i = static_cast<std::uint32_t>(begin + wall);
     const std::size_t cell = cellAt(grid, p.position[i]);
-    const std::uint64_t group = !workspace.hasFluid[cell]   ? inactiveKey
+    const std::uint64_t group = !workspace.active[cell]     ? inactiveKey
                                 : owners_.isOwn(cell)       ? 0
                                 : owners_.isBesideOwn(cell) ? ghostKey
                                                             : inactiveKey;
@@ -117,7 +113,7 @@ void Decomposition<D, Cpu>::listSent(const CellGrid<D>& grid, std::span<const Ve
   template void Decomposition<D, Cpu>::sortFluid(const CellGrid<D>&, Particles<D>&, CellRanges<>&,          \
                                                  SortWorkspace<>&);                                         \
   template void Decomposition<D, Cpu>::findActiveCells(const Communicator&, const CellGrid<D>&,             \
-                                                       std::span<const Vec<D>>, SortWorkspace<>&);          \
+                                                       const Particles<D>&, SortWorkspace<>&);              \
   template void Decomposition<D, Cpu>::sortWalls(const CellGrid<D>&, Particles<D>&, CellRanges<>&,          \
                                                  SortWorkspace<>&);                                         \
   template void Decomposition<D, Cpu>::listSent(const CellGrid<D>&, std::span<const Vec<D>>, std::uint32_t, \

@@ -2,6 +2,7 @@
 
 #include "treacle/core/parallel.hpp"
 #include "treacle/search/cell_sort.hpp"
+#include "treacle/search/touching_cells.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -35,6 +36,28 @@ template <int D>
 void requireFinite(std::span<const Vec<D>> position) {
   if (const auto bad = std::ranges::count_if(position, [](const auto& x) { return !isFinitePosition(x); }))
     throwNotFinite(static_cast<std::uint64_t>(bad));
+}
+
+/// Finds workspace.active. `hasFluid(cell)`.
+template <int D, class HasFluid>
+void markActiveCells(const CellGrid<D>& grid, const Particles<D>& p, const HasFluid& hasFluid,
+                     SortWorkspace<>& workspace) {
+  workspace.active.resize(grid.cellCount());
+  std::fill(workspace.active.begin(), workspace.active.end(), std::uint8_t{0});
+  const auto markAround = [&](std::size_t cell) {
+    forEachAdjacentCell(grid, grid.cellAt(cell),
+                        [&](const Vec<D, int>& c) { workspace.active[grid.linear(c)] = 1; });
+  };
+  for (std::size_t cell = 0; cell < workspace.active.size(); ++cell)
+    if (hasFluid(cell)) markAround(cell);
+  const BodySet rigid = rigidBodies(p.rigid);
+  if (rigid.isEmpty()) return;
+  workspace.bodies.resize(grid.cellCount());
+  std::fill(workspace.bodies.begin(), workspace.bodies.end(), 0u);
+  addBodies<D>(grid, p.position.span().subspan(p.wallBegin()), p.body.span().subspan(p.wallBegin()), rigid,
+               workspace.bodies.span());
+  for (std::size_t cell = 0; cell < workspace.active.size(); ++cell)
+    if (mayTouchAround(grid, workspace.bodies.data(), grid.cellAt(cell))) workspace.active[cell] = 1;
 }
 
 /// Brings the fields of particles [begin, end) into the order of keyed[begin, end), which holds their keys and

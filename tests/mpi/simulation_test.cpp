@@ -221,12 +221,11 @@ TEST(SharedSimulation, RigidBodies) {
   }
 }
 
-/// Until a block has landed on its corner and its side.
+/// Until a block has landed on its corner and its side, beside fluid and far from it.
 TEST(SharedSimulation, RigidBodiesThatTouch) {
-  for (const double friction : {0.0, 0.5}) {
-    Case c = fallingBlockCase(2, 30);
+  for (Case c : {fallingBlockCase(2, 30), withDistantFluid(fallingBlockCase(2, 30))}) {
     c.solver.deflation = 0;
-    c.bodies[1].friction = c.bodies[2].friction = friction;
+    c.bodies[1].friction = c.bodies[2].friction = 0.5;
     Simulation<2> shared(c, partOf<2>(c), 0, 0, &job()), alone(c, made<2>(c));
     for (int k = 0; k < 20; ++k) {
       const RigidBody a = shared.advance().rigid[1], b = alone.advance().rigid[1];

@@ -73,6 +73,16 @@ struct RandomParticles {
     }
   }
 
+  /// Makes a rigid body, 3, of the walls in a box above the fluid, and one other body of all other walls.
+  void addRigidBody() {
+    particles.rigid.bodies.resize(4);
+    particles.rigid.bodies[3].mass = 1;
+    for (std::uint32_t i = particles.fluidCount; i < particles.count; ++i) {
+      const Vec<D>& x = particles.position[i];
+      particles.body[i] = std::abs(x[0] - 0.5) < 0.1 && std::abs(x[D - 1] - 0.85) < 0.1 ? 3 : 1;
+    }
+  }
+
   /// Of these particles, here or on a device, once they are sorted.
   template <class Backend>
   SortedParticles<D> sorted(const Particles<D, Backend>& p, const CellRanges<Backend>& r) const {

@@ -100,6 +100,13 @@ inline Case fallingBlockCase(int dimensions, double angle) {
   return c;
 }
 
+/// A case of these blocks with all fluid at an end of the domain.
+inline Case withDistantFluid(Case c) {
+  c.bodies[0].shape.min[0] = 24e-3, c.bodies[0].shape.max[0] = 28e-3;
+  c.bodies[0].where.clear();
+  return c;
+}
+
 /// A block that lies on a slope, of which gravity is tilted in its place: along x it goes down. Drops of fluid
 /// stand on the slope at both ends of it, farther away than they act on it.
 inline Case slopeCase(int dimensions, double slope, double friction) {
@@ -116,15 +123,10 @@ inline Case slopeCase(int dimensions, double slope, double friction) {
   return c;
 }
 
-/// The same for ISPH, by which particles act less far: a shorter block, and drops that are nearer, in search cells
-/// from which those next to them reach below all of the block. Drops press on nothing in the published scheme.
+/// The same for ISPH. Drops press on nothing in the published scheme.
 inline Case isphSlopeCase(double slope, double friction) {
   Case c = withIsph(slopeCase(2, slope, friction), 5);
   c.method.scheme = SchemeKind::Published;
-  c.domain.min[0] = -31e-3, c.domain.max[0] = 31.41e-3;  // cells of 2.4 mm, from -4.6 mm and from 2.6 mm on
-  c.bodies[0].shape.min[0] = -5e-3, c.bodies[0].shape.max[0] = 5e-3;
-  c.bodies[0].where = "abs(x) > 4e-3";
-  c.bodies[1].shape.min = {-2e-3, -8e-3, 0}, c.bodies[1].shape.max = {2e-3, -6e-3, 0};
   return c;
 }
 

@@ -176,8 +176,8 @@ class IsphStep final : public StepMethod<D, Backend> {
            deficit_.bytes() + eddyViscosity_.bytes() + wallViscosity_.bytes() + renormalisation_.bytes() +
            acrossWalls_.bytes() + missing_.bytes() + surface_.bytes() + predictor_.bytes() + source_.bytes() +
            solution_.bytes() + shifted_.bytes() + (arrangement_ ? arrangement_->bytes() : 0) + wallShare_.bytes() +
-           forces_.bytes() + pressure_.bytes() + unknowns_.bytes() + (gas_ ? gas_->bytes() : 0) +
-           pressing_.bytes() + wallSurface_.bytes() + closed_.bytes();
+           forces_.bytes() + pressure_.bytes() + (gas_ ? gas_->bytes() : 0) + pressing_.bytes() +
+           wallSurface_.bytes() + closed_.bytes();
   }
 
   /// Pairs up to this share of the kernel's radius make the smoother's matrix: 1.9 l with the usual kernel.

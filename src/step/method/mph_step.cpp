@@ -191,7 +191,7 @@ class MphStep final : public StepMethod<D, Backend> {
            (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + places_.bytes() +
            divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() +
            wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) + (elasticity_ ? elasticity_->bytes() : 0) +
-           unknowns_.bytes() + pressure_.bytes();
+           pressure_.bytes();
   }
 
  private:

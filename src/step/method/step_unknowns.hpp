@@ -37,7 +37,7 @@ class StepUnknowns {
  public:
   /// `state` must outlive this.
   explicit StepUnknowns(FlowState<D, Backend>& state) : state_(state), pumps_(state) {
-    if (state.theCase.hasRigid()) bodies_.emplace(state), contacts_.emplace(state);
+    if (state.theCase.hasRigid()) bodies_.emplace(state);
   }
 
   /// Gas whose pressures are found, too. Must outlive this.
@@ -56,7 +56,7 @@ class StepUnknowns {
 
   /// Finds the unknowns, and the flow with these. `flow(isFirst)`: solves it with the values that were set; what
   /// it is made of has those of the first call already. `loads()`: what bodies bear of it. `surface`:
-  /// RigidContacts::find. Returns what became of all solves. Errors: RunError.
+  /// rigidContacts(). Returns what became of all solves. Errors: RunError.
   template <class Flow, class Loads>
   StagedReport solve(const SortedParticles<D>& sorted, std::span<const WallSurface<D>> surface, Flow&& flow,
                      Loads&& loads) {
@@ -76,7 +76,7 @@ class StepUnknowns {
     if (x.empty()) return flow(true);
     if (!gas_ || !gas_->isNew()) response_ = state_.particles.response;
     std::vector<Restraint> restraints;
-    if (bodies_) restraints = bodies_->restraints(contacts_->find(state_, sorted, surface), x.size());
+    if (bodies_) restraints = bodies_->restraints(rigidContacts(state_, sorted, surface), x.size());
     std::optional<StagedReport> report;
     const auto missing = [&](const std::vector<double>& at) {
       if (report) {
@@ -109,8 +109,6 @@ class StepUnknowns {
     state_.particles.response = response_;
   }
 
-  std::size_t bytes() const { return contacts_ ? contacts_->bytes() : 0; }
-
  private:
   static constexpr double tolerance = 1e-6;  // of a step to the solution, of the scales
   static constexpr int mostSteps = 60;
@@ -125,7 +123,6 @@ class StepUnknowns {
   FlowState<D, Backend>& state_;
   PumpPressures<D, Backend> pumps_;
   std::optional<RigidSystem<D, Backend>> bodies_;  // where the case has rigid bodies; then also:
-  std::optional<RigidContacts<D, Backend>> contacts_;
   StepGas<D, Backend>* gas_ = nullptr;
   std::optional<GasPressures<D, Backend>> gasPressures_;  // where there is gas
   std::vector<double> response_;                          // Particles::response

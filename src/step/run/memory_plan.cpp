@@ -6,6 +6,7 @@
 #include "treacle/model/case/case_keys.hpp"
 #include "treacle/model/case/flow_scales.hpp"
 #include "treacle/mph/mph_pairs.hpp"
+#include "treacle/search/touching_cells.hpp"
 #include "treacle/step/method/solve_stages.hpp"
 #include "treacle/step/walls/near_blocks.hpp"
 
@@ -168,11 +169,16 @@ MemoryCounts count(const Case& c, const Particles<D>& some, const Communicator* 
       forEachAdjacentCell(cells, cells.cellAt(cell),
                           [&](const Vec<D, int>& at) { besideFluid[cells.linear(at)] = 1; });
   MemoryCounts n{.particles = some.numbers(), .cells = filled.size()};
+  std::vector<std::uint32_t> bodies(filled.size());
+  addBodies<D>(cells, some.position.span().subspan(some.wallBegin()), some.body.span().subspan(some.wallBegin()),
+               rigidBodies(some.rigid), bodies);
   n.filledCells = static_cast<std::uint64_t>(std::ranges::count(filled, 1));
   n.nodes = static_cast<std::uint64_t>(std::ranges::count(besideFluid, 1));
   for (std::uint32_t i = some.fluidCount; i < some.count; ++i) {
     n.nearWalls += !near.isFar(some, i);
-    n.activeWalls += isFinitePosition(some.position[i]) && besideFluid[cellOf(some.position[i])];
+    if (!isFinitePosition(some.position[i])) continue;
+    const Vec<D, int> cell = cells.cellOf(some.position[i]);
+    n.activeWalls += besideFluid[cells.linear(cell)] || mayTouchAround(cells, bodies.data(), cell);
   }
   if (!processes) return n;
   std::array all{n.particles.fluid, n.particles.wall, n.particles.surfaces, n.nearWalls, n.activeWalls};

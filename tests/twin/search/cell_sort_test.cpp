@@ -50,6 +50,15 @@ TEST(CellSortTwin, EqualsTheCpu) {
   checkCellSortSizes<3>();
 }
 
+TEST(CellSortTwin, KeepsTheSameWallsActiveAroundRigidBodies) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  RandomParticles<2> plane(4000, 2000, 3);
+  RandomParticles<3> space(4000, 2000, 3);
+  plane.addRigidBody(), space.addRigidBody();
+  DeviceSort<2>().check(plane);
+  DeviceSort<3>().check(space);
+}
+
 TEST(CellSortTwin, KeepsTheOrderOfEqualKeys) {
   TREACLE_SKIP_WITHOUT_GPU();
   RandomParticles<3> r(5000, 3000, 3);

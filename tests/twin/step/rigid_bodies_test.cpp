@@ -48,6 +48,7 @@ TEST(RigidBodiesTwin, TouchAsOnTheCpu) {
   compareFall<2>(fallingBlockCase(2, 30));
   compareFall<3>(fallingBlockCase(3, 30));
   compareFall<2>(withIsph(fallingBlockCase(2, 30), 5));
+  compareFall<2>(withDistantFluid(fallingBlockCase(2, 30)));
 }
 
 TEST(RigidBodiesTwin, MoveAsOnTheCpu) {

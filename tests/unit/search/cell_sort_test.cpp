@@ -64,6 +64,28 @@ TEST(CellSort, IsStable) {
   EXPECT_TRUE(std::is_sorted(r.particles.id.begin(), r.particles.id.end()));
 }
 
+template <int D>
+void checkRigidWalls() {
+  RandomParticles<D> r(4000, 2000, 3);
+  sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
+  const std::uint32_t alone = r.ranges.activeCount;
+  r.addRigidBody();
+  sortByCell(r.context, r.grid, r.particles, r.ranges, r.workspace);
+  const Particles<D>& p = r.particles;
+  EXPECT_GT(r.ranges.activeCount, alone + 20);
+  EXPECT_LT(r.ranges.activeCount, p.count - 20);  // not all
+  for (std::uint32_t j = r.ranges.activeCount; j < p.count; ++j)
+    for (std::uint32_t i = p.wallBegin(); i < p.count; ++i)
+      if (p.body[i] != p.body[j]) {
+        ASSERT_GT(r.distance(p.position[i], p.position[j]), r.radius);
+      }
+}
+
+TEST(CellSort, KeepsWallsActiveWhereRigidBodiesMayTouch) {
+  checkRigidWalls<2>();
+  checkRigidWalls<3>();
+}
+
 TEST(CellSort, RefusesPositionsThatAreNotFinite) {
   for (const double value : {std::nan(""), HUGE_VAL})
     for (const std::uint32_t i : {0u, 99u, 100u, 149u}) {  // fluid and walls

@@ -277,6 +277,13 @@ TEST(RigidBodies, RestOnAFloorWithoutFluidBetweenInIsph) {
   checkFall<3>(withIsph(fallingBlockCase(3, 0), 5), 16, 4e-3);
 }
 
+TEST(RigidBodies, RestOnAFloorFarFromFluid) {
+  checkFall<2>(withDistantFluid(fallingBlockCase(2, 0)), 16, 4e-3);
+  checkFall<2>(withDistantFluid(fallingBlockCase(2, 30)), 60, 4e-3);
+  checkFall<3>(withDistantFluid(fallingBlockCase(3, 0)), 16, 4e-3);
+  checkFall<2>(withDistantFluid(withIsph(fallingBlockCase(2, 30), 5)), 60, 4e-3);
+}
+
 /// A block that may go along the floor alone, which is turned by a rounding error. Friction has no hold there:
 /// what presses the block onto the floor is what locks it.
 TEST(RigidBodies, SlideAlongWallsThatStandAskewByRounding) {
@@ -317,7 +324,7 @@ TEST(RigidBodies, RestOnAHingeAboveAFloor) {
 /// They go on together, and what one loses the other gets.
 TEST(RigidBodies, DoNotGoThroughEachOther) {
   const Case heavy = meetingBlocksCase(7000, 7000), light = meetingBlocksCase(7000, 500);
-  for (const Case& c : {heavy, light, withIsph(heavy, 5), withIsph(light, 1e-3)}) {
+  for (const Case& c : {heavy, light, withIsph(heavy, 5), withIsph(light, 1e-3), withDistantFluid(light)}) {
     Simulation<2> simulation(c, created<2>(c));
     const Vec<3> before = momentum(c, simulation);
     for (int k = 0; k < 30; ++k) simulation.advance();

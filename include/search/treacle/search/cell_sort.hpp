@@ -16,8 +16,9 @@ namespace treacle {
 /// Where the particles of each cell stand after the sort.
 template <class Backend = Cpu>
 struct CellRanges {
-  /// Fluid and those walls that have fluid in their own or an adjacent cell come first, [0, activeCount): the
-  /// others are too far away to take part in any sum.
+  /// Fluid and active walls come first, [0, activeCount). Walls are active where there is fluid in their own or an
+  /// adjacent cell, or a rigid body there may touch another body; the others are too far away to take part in any
+  /// sum.
   std::uint32_t activeCount = 0;
   std::uint32_t ghostWalls = 0;                         // the last active ones, which other processes own
   Buffer<std::uint32_t, Backend> fluidBegin, fluidEnd;  // per cell (CellGrid::linear): range of fluid particles
@@ -52,10 +53,11 @@ struct SortWorkspace<Cpu> {
     std::uint32_t index;
   };
   Buffer<KeyedIndex> keyed;
-  Buffer<std::byte> field;        // a permuted copy of one field
-  Buffer<std::uint8_t> hasFluid;  // per cell: fluid in it or next to it
+  Buffer<std::byte> field;       // a permuted copy of one field
+  Buffer<std::uint8_t> active;   // per cell: walls in it are
+  Buffer<std::uint32_t> bodies;  // per cell: wordOfBody of all walls in it; only with rigid bodies
 
-  std::size_t bytes() const { return keyed.bytes() + field.bytes() + hasFluid.bytes(); }
+  std::size_t bytes() const { return keyed.bytes() + field.bytes() + active.bytes() + bodies.bytes(); }
 };
 
 template <>
@@ -63,12 +65,13 @@ struct SortWorkspace<Cuda> {
   Buffer<std::uint64_t, Cuda> key, sortedKey;
   Buffer<std::uint32_t, Cuda> index, sortedIndex;
   Buffer<std::byte, Cuda> field;
-  Buffer<std::uint8_t, Cuda> hasFluid;
+  Buffer<std::uint8_t, Cuda> active;   // as above
+  Buffer<std::uint32_t, Cuda> bodies;  // as above
   Buffer<std::uint32_t, Cuda> count;  // of active fluid, which is all, active walls, positions that are not finite
 
   std::size_t bytes() const {
-    return key.bytes() + sortedKey.bytes() + index.bytes() + sortedIndex.bytes() + field.bytes() +
-           hasFluid.bytes() + count.bytes();
+    return key.bytes() + sortedKey.bytes() + index.bytes() + sortedIndex.bytes() + field.bytes() + active.bytes() +
+           bodies.bytes() + count.bytes();
   }
 };
 

@@ -41,7 +41,7 @@ class Decomposition<D, Cpu> : public ProcessParts<D, Cpu> {
 
   void balance(const Communicator&, const CellGrid<D>&, const Particles<D>&);
   void migrate(const Communicator&, const CellGrid<D>&, Particles<D>&);
-  void findActiveCells(const Communicator&, const CellGrid<D>&, std::span<const Vec<D>> fluid, SortWorkspace<>&);
+  void findActiveCells(const Communicator&, const CellGrid<D>&, const Particles<D>&, SortWorkspace<>&);
   void sortFluid(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&);
   void sortWalls(const CellGrid<D>&, Particles<D>&, CellRanges<>&, SortWorkspace<>&);
   /// Lists of the particles [begin, end) whose cells touch those of others.
@@ -74,7 +74,8 @@ class Decomposition<D, Cuda> : public ProcessParts<D, Cuda> {
   void adoptOwners(Context<Cuda>&, const CellGrid<D>&);
   /// Returns whether any process has other fluid now.
   bool migrate(Context<Cuda>&, const CellGrid<D>&, Particles<D, Cuda>&, SortWorkspace<Cuda>&);
-  void findActiveCells(Context<Cuda>&, const CellGrid<D>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
+  void findActiveCells(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&, const CellRanges<Cuda>&,
+                       SortWorkspace<Cuda>&);
   void listSentFluid(Context<Cuda>&, const CellRanges<Cuda>&, SortWorkspace<Cuda>&);
   void sortWalls(Context<Cuda>&, const CellGrid<D>&, const Particles<D, Cuda>&, CellRanges<Cuda>&,
                  SortWorkspace<Cuda>&);

@@ -5,10 +5,10 @@
 #include "treacle/model/geometry/wall_surface.hpp"
 #include "treacle/search/cell_grid.hpp"
 #include "treacle/search/cell_sort.hpp"
+#include "treacle/search/touching_cells.hpp"
 
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace treacle {
@@ -33,14 +33,14 @@ struct ContactSearch {
   const std::uint32_t* id;        // likewise
   const WallSurface<D>* surface;  // of the active walls, as they are now; null: not known
   std::uint32_t wallBegin;
-  std::span<const std::uint8_t> isRigid;  // per body of the case
-  double spacing;                         // l [m]
+  BodySet rigid;
+  double spacing;  // l [m]
 
   /// Whether particle i of a wall is of a rigid body and near another body, with the place where the two are
   /// nearest. A pair of particles stands for what their surfaces are there, planes: the bodies are apart by the
   /// largest distance along one of the normals, as convex bodies are.
   TREACLE_HD bool find(std::uint32_t i, Contact<D>& contact) const {
-    if (!isRigid[body[i]]) return false;
+    if (!rigid.has(body[i])) return false;
     const Vec<D> x = position[i];
     bool found = false;
     forEachAdjacentCell(grid, grid.cellOf(x), [&](const Vec<D, int>& cell) {

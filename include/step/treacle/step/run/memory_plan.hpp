@@ -13,7 +13,7 @@ namespace treacle {
 struct MemoryCounts {
   ParticleNumbers particles;
   std::uint64_t nearWalls = 0;    // that the simulation has; the others are DistantWalls
-  std::uint64_t activeWalls = 0;  // of these with fluid in their own or an adjacent search cell
+  std::uint64_t activeWalls = 0;  // of these (CellRanges)
   std::uint64_t cells = 0;        // of the search
   std::uint64_t filledCells = 0;  // of these with fluid
   std::uint64_t nodes = 0;        // of the finest background grid
