@@ -163,6 +163,17 @@ class MovingBodies {
     return speed;
   }
 
+  /// What no part of a rigid body should exceed in the next step, which is at most twice as long as the last one
+  /// [m/s].
+  double expectedSpeed() const {
+    const RigidMotion& motion = state_.particles.rigid;
+    double speed = 0, change = 0;
+    for (std::size_t b = 0; b < motion.bodies.size(); ++b)
+      speed = std::max(speed, norm(motion.bodies[b].velocity) + norm(motion.bodies[b].spin) * reach_[b]);
+    for (const double x : motion.change) change += x * x;
+    return speed + 2 * std::sqrt(change);
+  }
+
   /// The rigid bodies have gone on with the velocities of the step.
   void accept() {
     if (!state_.theCase.hasRigid()) return;

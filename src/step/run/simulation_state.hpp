@@ -124,8 +124,9 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   void chooseTimeStep() {
+    const double fastest = std::max(lastSpeed, bodies.expectedSpeed());
     const StepControl::Step next =
-        control ? control->next(particles.steps, time, lastSpeed) : givenStep(theCase, step, time, lastSpeed);
+        control ? control->next(particles.steps, time, fastest) : givenStep(theCase, step, time, fastest);
     timeStep = next.length, endOfStep = next.end;
     // Velocities belong to the middles of steps where forces do.
     velocityStep = theCase.middleShare() > 0 ? 0.5 * (this->lastStep() + timeStep) : timeStep;

@@ -284,6 +284,25 @@ TEST(RigidBodies, RestOnAFloorFarFromFluid) {
   checkFall<2>(withDistantFluid(withIsph(fallingBlockCase(2, 30), 5)), 60, 4e-3);
 }
 
+/// Automatic steps see the block come, and do not lead it through the floor.
+TEST(RigidBodies, FallOntoAFloorInAutomaticSteps) {
+  Case c = withDistantFluid(fallingBlockCase(2, 0));
+  c.bodies[1].shape.transform.reset();
+  c.bodies[1].shape.min[1] += 20e-3, c.bodies[1].shape.max[1] += 20e-3;
+  c.time.automatic = true, c.time.tolerance = 0.02;
+  c.time.step = 20e-3, c.time.least = 1e-6, c.time.end = 0.08;
+  c.bodies[1].velocity = {0, -2, 0};
+  c.gravity = {};  // the fluid rests and asks for no short steps
+  Simulation<2> simulation(c, created<2>(c));
+  double least = 1;
+  while (!c.atEnd(simulation.step(), simulation.time())) {
+    simulation.advance();
+    least = std::min(least, gapToFloor(c, simulation));
+  }
+  EXPECT_GT(least, -0.02 * c.spacing);
+  EXPECT_NEAR(simulation.particles().rigid.bodies[1].center[1], -6e-3, 0.05 * c.spacing);
+}
+
 /// A block that may go along the floor alone, which is turned by a rounding error. Friction has no hold there:
 /// what presses the block onto the floor is what locks it.
 TEST(RigidBodies, SlideAlongWallsThatStandAskewByRounding) {
