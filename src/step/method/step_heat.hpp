@@ -31,7 +31,7 @@ class StepHeat {
         table_(HeatTable::make(c)),
         enthalpy_(EnthalpyTable::make(c.materials)),
         walls_(wallHeat(c)),
-        surface_(SurfaceLack::make(pairs)),
+        surface_(SurfaceColour<D>::make(pairs)),
         surfaceCounts_(hasSurfaceHeat(c)) {
     if (c.freezes()) freezing_.emplace(c);
   }
@@ -52,7 +52,7 @@ class StepHeat {
     const std::span<const std::uint8_t> material = pairs.material.first(own);
     if (freezing_) terms.own = freezing_->conduction(context, pairs.material.first(pairs.fluidCount), T);
     conductionDiagonal<D>(context, pairs, terms, ofFluid_, ofWalls_);
-    if (surfaceCounts_) surfaceArea<D>(context, pairs, surface_, lack_, area_);
+    if (surfaceCounts_) surfaceArea<D>(context, pairs, surface_, area_);
     if (settings_.viscousHeating) {
       shearDissipation<D>(context, pairs, state.velocity, heating_);
       if (!ofModes.empty()) setEach(context, Sum{heating_, ofModes, heating_.span()}, own);
@@ -93,8 +93,8 @@ class StepHeat {
   }
 
   std::size_t bytes() const {
-    std::size_t sum = ofWalls_.bytes() + ofSurface_.bytes() + lack_.bytes() + wallBuffer_.bytes() +
-                      krylov_.bytes() + (freezing_ ? freezing_->bytes() : 0);
+    std::size_t sum = ofWalls_.bytes() + ofSurface_.bytes() + wallBuffer_.bytes() + krylov_.bytes() +
+                      (freezing_ ? freezing_->bytes() : 0);
     for (const auto* field : {&scale_, &ofFluid_, &area_, &heating_, &boundary_, &source_, &extra_, &inverse_,
                               &rhs_, &change_, &product_, &next_, &withGhosts_})
       sum += field->bytes();
@@ -111,7 +111,6 @@ class StepHeat {
     if (settings_.viscousHeating) heating_.resize(context, own);
     if (!surfaceCounts_) return;
     area_.resize(context, own);
-    lack_.resize(context, own);
     ofSurface_.resize(context, own);
   }
 
@@ -148,14 +147,13 @@ class StepHeat {
   HeatTable table_;
   EnthalpyTable enthalpy_;
   std::vector<WallHeat> walls_;
-  SurfaceLack surface_;
+  SurfaceColour<D> surface_;
   bool surfaceCounts_;  // whether anything is exchanged there
   Buffer<WallHeat, Backend> wallBuffer_;
   // Per own fluid particle; scale_ per fluid particle, ghosts included.
   Buffer<double, Backend> scale_, ofFluid_, area_, heating_, boundary_, source_, extra_, inverse_, rhs_, change_,
       product_, next_, withGhosts_;
   Buffer<HeatExchange, Backend> ofWalls_, ofSurface_;
-  Buffer<Vec<D>, Backend> lack_;
   KrylovWorkspace<Backend> krylov_;
   std::optional<StepFreezing<Backend>> freezing_;  // where some material freezes
   std::array<double, HeatSums::count> sums_{};

@@ -30,9 +30,10 @@ struct HeatConstants {
   double transfer;  // [W/(m2 K)]
   double spacing;   // l [m]
 
-  /// How far below a flat free surface the temperature of the first row is that of the fluid behind it,
-  /// extrapolated: 0.557 l in a square and 0.523 l in a cubic lattice.
-  static constexpr double depth = 0.54;  // [spacings]
+  /// How far below a flat free surface the temperature that counts there is that of the fluid, extrapolated: that
+  /// of the first row is 0.557 l below it in a square and 0.523 l in a cubic lattice, and the second row has 3 and
+  /// 6 %.
+  static constexpr double depth = 0.58;  // [spacings]
 
   /// rho c_p / dt of material m [W/(m3 K)]
   TREACLE_HD double inertia(int m) const { return table.capacity[m] / timeStep; }
