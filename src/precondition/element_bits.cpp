@@ -1,5 +1,7 @@
 #include "treacle/precondition/element_bits.hpp"
 
+#include "treacle/mph/renormalisation.hpp"
+
 #include <algorithm>
 
 namespace treacle {
@@ -12,7 +14,8 @@ double largestElement(const MphPairs<D>& pairs) {
     const double r = pairs.terms.pressureRadius * (k + 0.5) / samples;
     largest = std::max(largest, pairs.terms.gradient(ExactDistance(r * r)) * r);
   }
-  return 1.01 * largest;  // between the samples
+  const double renormalisation = pairs.slips() ? 1 / leastSlipMoment : 1;
+  return 1.01 * renormalisation * largest;  // between the samples
 }
 template double largestElement(const MphPairs<2>&);
 template double largestElement(const MphPairs<3>&);

@@ -172,13 +172,13 @@ double Oracle<D>::latticeMoment() const {
 }
 
 template <int D>
-Matrix Oracle<D>::moment(std::uint32_t i) const {
+Matrix Oracle<D>::moment(std::uint32_t i, bool acts) const {
   Matrix m = Matrix::Zero(D, D);
   for (std::uint32_t j = 0; j < count(); ++j) {
     if (j == i) continue;
-    const Vec<D> d = difference(i, j);
+    const Vec<D> d = difference(i, j), v = acts ? acting(i, j, d) : d;
     for (int r = 0; r < D; ++r)
-      for (int k = 0; k < D; ++k) m(r, k) -= dw(norm(d), hp) / norm(d) * d[r] * d[k];
+      for (int k = 0; k < D; ++k) m(r, k) -= dw(norm(d), hp) / norm(d) * v[r] * v[k];
   }
   return m;
 }
@@ -186,18 +186,20 @@ Matrix Oracle<D>::moment(std::uint32_t i) const {
 template <int D>
 Matrix Oracle<D>::renormalisation(std::uint32_t i) const {
   if (!s.c.isAccurate() || i >= s.particles.fluidCount) return Matrix::Identity(D, D);
-  return renormalisationOracle(moment(i));
+  return renormalisationOracle(moment(i), moment(i, true));
 }
 
-Matrix renormalisationOracle(const Matrix& moment) {
-  const EigenSystem system = eigenSystem(moment);
-  const Index n = moment.rows();
+Matrix renormalisationOracle(const Matrix& whole, const Matrix& acting) {
+  const double factor = std::min(1.0, std::max(eigenSystem(whole).values.minCoeff(), 0.3));
+  const EigenSystem system = eigenSystem(acting);
+  const Index n = acting.rows();
   Matrix b = Matrix::Zero(n, n);
   for (Index k = 0; k < n; ++k)
     for (Index r = 0; r < n; ++r)
       for (Index c = 0; c < n; ++c)
-        b(r, c) += system.vectors(r, k) * system.vectors(c, k) / std::max(system.values[k], 0.3);
-  return std::min(1.0, std::max(system.values.minCoeff(), 0.3)) * b;
+        b(r, c) +=
+            factor * system.vectors(r, k) * system.vectors(c, k) / std::max({system.values[k], 0.3, 0.5 * factor});
+  return b;
 }
 
 template <int D>

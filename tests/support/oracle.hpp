@@ -9,8 +9,8 @@
 
 namespace treacle::test {
 
-/// B of a moment M, as renormalisation.hpp has it.
-Matrix renormalisationOracle(const Matrix& moment);
+/// B of a moment M, as renormalisation.hpp has it. `acting`: without what is along walls at which fluid slips.
+Matrix renormalisationOracle(const Matrix& whole, const Matrix& acting);
 
 /// [K23] sect. 2 from its formulas, in the plainest way: all pairs, dense matrices, none of the program's own
 /// formulas. Indices as in the scene: fluid first, then all walls.
@@ -71,8 +71,8 @@ struct Oracle {
   /// Sum of -w' r e_x^2 in a full lattice.
   double latticeMoment() const;
 
-  /// M = sum of -w' r e e^T over the neighbours of a particle.
-  Matrix moment(std::uint32_t i) const;
+  /// M = sum of -w' r e e^T over the neighbours of a particle; of what acts of e alone.
+  Matrix moment(std::uint32_t i, bool acts = false) const;
   /// B of a fluid particle where the case has it, else I.
   Matrix renormalisation(std::uint32_t i) const;
 

@@ -186,12 +186,12 @@ class MphStep final : public StepMethod<D, Backend> {
   const CellOwners<D>& owners() const override { return neighbourhood_.owners(); }
   const MaterialTable& materials() const override { return pairs_.materials; }
   std::size_t bytes() const override {
-    return neighbourhood_.bytes() + wallSurface_.bytes() + renormalisation_.bytes() + viscosities_.bytes() +
-           (states_ ? states_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) + (surface_ ? surface_->bytes() : 0) +
-           (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() + wallGradient_.bytes() + places_.bytes() +
-           divergence_.bytes() + rhs_.bytes() + found_.bytes() + solver_.bytes() + balance_.bytes() +
-           wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) + (elasticity_ ? elasticity_->bytes() : 0) +
-           pressure_.bytes();
+    return neighbourhood_.bytes() + wallSurface_.bytes() + slipSide_.bytes() + renormalisation_.bytes() +
+           viscosities_.bytes() + (states_ ? states_->bytes() : 0) + (heat_ ? heat_->bytes() : 0) +
+           (surface_ ? surface_->bytes() : 0) + (tension_ ? tension_->bytes() : 0) + wallBlock_.bytes() +
+           wallGradient_.bytes() + places_.bytes() + divergence_.bytes() + rhs_.bytes() + found_.bytes() +
+           solver_.bytes() + balance_.bytes() + wallForces_.bytes() + (gas_ ? gas_->bytes() : 0) +
+           (elasticity_ ? elasticity_->bytes() : 0) + pressure_.bytes();
   }
 
  private:
@@ -283,7 +283,13 @@ class MphStep final : public StepMethod<D, Backend> {
 
   void placeWallSurfaces() {
     treacle::placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
-    if (!state_.particles.wallSurface.empty()) neighbourhood_.setWallSurfaces(wallSurface_);
+    if (state_.particles.wallSurface.empty()) return;
+    neighbourhood_.setWallSurfaces(wallSurface_);
+    if (!pairs_.slips()) return;
+    slipSide_.resize(state_.context, pairs_.fluidCount);
+    slipSides<D>(state_.context, pairs_, slipSide_.span().first(pairs_.ownFluid()));
+    fillGhosts(state_.context, Held::Fluid, slipSide_.data());
+    neighbourhood_.setSlipSides(slipSide_);
   }
 
   /// B, which everything that contains C needs.
@@ -340,6 +346,7 @@ class MphStep final : public StepMethod<D, Backend> {
   const MphPairs<D>& pairs_;
   bool wholeRows_;                               // of A in the lists
   Buffer<WallSurface<D>, Backend> wallSurface_;  // per active wall particle
+  Buffer<SlipSide<D>, Backend> slipSide_;        // per fluid particle, where some fluid slips
   Buffer<SymmetricBlock<D>, Backend> renormalisation_;
   Buffer<Block<D>, Backend> wallBlock_;
   Buffer<Vec<D>, Backend> wallGradient_;

@@ -63,6 +63,18 @@ struct SumsTwin {
     Buffer<SymmetricBlock<D>, Cuda> found(d.context, n);
     renormalisation<D>(d.context, d.pairs, found.span());
     EXPECT_LE(difference<SymmetricBlock<D>>(d.context, s.renormalisation.span(), found), kernelTolerance);
+    if (!s.pairs().slips()) return;
+    Buffer<SlipSide<D>> sides(n);
+    Buffer<SlipSide<D>, Cuda> sidesFound(d.context, n);
+    slipSides<D>(s.context, s.pairs(), sides);
+    slipSides<D>(d.context, d.pairs, sidesFound);
+    EXPECT_LE(difference<SlipSide<D>>(d.context, sides.span(), sidesFound), kernelTolerance);
+    MphPairs<D> host = s.pairs(), device = d.pairs;
+    host.slipSide = sides.data(), device.slipSide = sidesFound.data();
+    Buffer<SymmetricBlock<D>> b(n);
+    renormalisation<D>(s.context, host, b);
+    renormalisation<D>(d.context, device, found.span());
+    EXPECT_LE(difference<SymmetricBlock<D>>(d.context, b.span(), found), kernelTolerance);
   }
 
   void checkViscosityScale() {

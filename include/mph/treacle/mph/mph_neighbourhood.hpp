@@ -51,6 +51,9 @@ class MphNeighbourhood {
     pairs_.wallSurface = surfaces.empty() ? nullptr : surfaces.data();
   }
 
+  /// slipSides() of all fluid; must outlive the sums of the step.
+  void setSlipSides(std::span<const SlipSide<D>> sides) { pairs_.slipSide = sides.data(); }
+
   /// B per fluid particle; must outlive the sums of the step. Empty: B = I everywhere.
   void setRenormalisation(std::span<const SymmetricBlock<D>> b) {
     pairs_.renormalisation = b.empty() ? nullptr : b.data();

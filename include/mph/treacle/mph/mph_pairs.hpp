@@ -4,6 +4,7 @@
 #include "treacle/model/case/case.hpp"
 #include "treacle/model/geometry/seen_face.hpp"
 #include "treacle/mph/mph_terms.hpp"
+#include "treacle/mph/slip_side.hpp"
 #include "treacle/mph/viscosity_classes.hpp"
 #include "treacle/search/cluster_list.hpp"
 #include "treacle/search/material_particles.hpp"
@@ -46,7 +47,8 @@ struct MphPairs : MaterialParticles<D> {
   // Whether particles have viscosities of their own (particle_viscosity.hpp): the scale is then times mu [Pa s],
   // and the viscosities of the materials are all 1.
   bool ownViscosities = false;
-  bool smoothWalls = false;  // Case::hasSmoothWalls
+  bool smoothWalls = false;               // Case::hasSmoothWalls
+  const SlipSide<D>* slipSide = nullptr;  // per fluid particle (slipSides()); null: each pair by its face
   ViscosityClasses classes;
   const std::uint8_t* viscosityClass = nullptr;  // per particle; null: the materials
 
@@ -130,7 +132,8 @@ struct MphPairs : MaterialParticles<D> {
   TREACLE_HD Vec<D> alongWall(std::uint32_t i, std::uint32_t j, const Vec<D>& d, const Vec<D>& v) const {
     if (!(this->materials.slipLength[this->material[i]] > 0)) return {};
     const SeenFace<D> face = seenFace(wallSurface[j - this->fluidCount], d);
-    return face.exists() ? v - face.across(v) : Vec<D>{};
+    if (!face.exists()) return {};
+    return slipSide ? slipSide[i].along(v) : v - face.across(v);
   }
 };
 

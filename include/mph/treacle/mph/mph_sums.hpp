@@ -41,6 +41,15 @@ void addPressureGradient(Context<Backend>&, const MphPairs<D>&, std::span<const 
 template <int D, class Backend>
 void divergence(Context<Backend>&, const MphPairs<D>&, std::span<const Vec<D>> u, std::span<double> div);
 
+/// How each own fluid particle sees walls along which it slips.
+template <int D, class Backend>
+void slipSides(Context<Backend>&, const MphPairs<D>& pairs, std::span<SlipSide<D>> side);
+
+/// Per own fluid particle B, without what is along walls at which fluid slips, in place of the moment of all
+/// neighbours (GradientMoment).
+template <int D, class Backend>
+void renormaliseAlongWalls(Context<Backend>&, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b);
+
 /// What is along walls at which fluid slips, for products that have it: y -= factor C q, div -= C^T u with the
 /// velocities of all, q -= lambda C^T u with those of the fluid and walls at rest.
 template <int D, class Backend>

@@ -2,6 +2,7 @@
 
 #include "treacle/mph/gradient_moment.hpp"
 #include "treacle/mph/mph_particles.hpp"
+#include "treacle/mph/mph_sums.hpp"
 #include "treacle/mph/pair_sums.hpp"
 #include "treacle/mph/particle_viscosity.hpp"
 #include "treacle/mph/renormalisation.hpp"
@@ -90,6 +91,7 @@ void viscosityScale(Context<Backend>& context, const MphPairs<D>& pairs, double 
 template <int D, class Backend>
 void renormalisation(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
   sumOnFluid(context, pairs, GradientMoment<D, MphTerms<D>, false>{pairs.terms, b.data()});
+  if (pairs.slips()) return renormaliseAlongWalls(context, pairs, b);
   forEach(context, b.size(), [=] TREACLE_HD(std::size_t i) { b[i] = renormalisationOf(b[i]); });
 }
 

@@ -13,6 +13,10 @@ namespace treacle {
 /// made that exact would weigh each of them.
 inline constexpr double leastMoment = 0.3;
 
+/// The same, over the factor of B, for what acts of moments beside walls along which fluid slips: eigenvalues of B
+/// are at most 1 over this there. The first row at a flat wall has 0.7.
+inline constexpr double leastSlipMoment = 0.5;
+
 /// B of a moment M = sum g d d^T = sum_k m_k v_k v_k^T [-], of neighbours at d with -e w' = g d:
 /// B = min(1, a_min) sum_k v_k v_k^T / a_k with a_k = max(m_k, leastMoment), a_min the least of them. It has M's
 /// eigenvectors, so that B M is symmetric; where no eigenvalue is below leastMoment, B M is the unit matrix but

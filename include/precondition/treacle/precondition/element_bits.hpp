@@ -56,7 +56,7 @@ TREACLE_HD inline Vec<D, float> inUnits(Vec<D, float> v) {
   return v;
 }
 
-/// No element of C is larger: B has no eigenvalue above 1 [1/m].
+/// No element of C is larger: B has no eigenvalue above 1, or 1 / leastSlipMoment where fluid slips [1/m].
 template <int D>
 double largestElement(const MphPairs<D>& pairs);
 
