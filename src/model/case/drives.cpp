@@ -15,16 +15,6 @@
 namespace treacle {
 namespace {
 
-/// Of the values in the run.
-double largestSize(const TimeFunction& f, double end) {
-  constexpr int samples = 1000;
-  double most = 0;
-  for (const double x : f.values) most = std::max(most, std::abs(x));
-  for (int k = 0; k < (f.isConstant() ? 1 : samples); ++k)
-    most = std::max(most, std::abs(f.at(k * end / samples)));
-  return most;
-}
-
 /// Of the face of an opening, a disc or a rectangle [m2; m in 2D].
 double areaOf(const Nozzle& n, int dimensions) {
   if (n.kind == NozzleKind::Disc) return dimensions == 2 ? 2 * n.radius : std::numbers::pi * n.radius * n.radius;
@@ -56,7 +46,7 @@ double pressureOfForce(const Case& c, const Body& body) {
     double section = 1;
     for (int j = 0; j < c.dimensions; ++j)
       if (j != static_cast<int>(k)) section *= box.max[j] - box.min[j];
-    if (section > 0) most = std::max(most, largestSize(*body.rigid.force[k], c.time.end) / section);
+    if (section > 0) most = std::max(most, largestSize(*body.rigid.force[k], 0, c.time.end) / section);
   }
   return most;
 }
@@ -148,6 +138,15 @@ double shearInFilms(const Case& c) {
 
 }  // namespace
 
+double largestSize(const TimeFunction& f, double from, double to) {
+  constexpr int samples = 1000;
+  double most = 0;
+  for (const double x : f.values) most = std::max(most, std::abs(x));
+  for (int k = 0; k < (f.isConstant() ? 1 : samples); ++k)
+    most = std::max(most, std::abs(f.at(from + k * (to - from) / samples)));
+  return most;
+}
+
 double widthOf(const Nozzle& n, int dimensions) {
   if (n.kind == NozzleKind::Disc) return n.innerRadius > 0 ? n.radius - n.innerRadius : 2 * n.radius;
   if (n.kind == NozzleKind::Rectangle) return dimensions == 3 ? std::min(n.width, n.height) : n.width;
@@ -169,9 +168,9 @@ Drives drivesOf(const Case& c, double length) {
   };
   for (const Opening& o : c.openings) {
     const double width = widthOf(o.face, c.dimensions), area = areaOf(o.face, c.dimensions);
-    if (o.pressure) press(largestSize(*o.pressure, c.time.end), width);
+    if (o.pressure) press(largestSize(*o.pressure, 0, c.time.end), width);
     if (!o.flowRate || !(area > 0)) continue;
-    const double speed = largestSize(*o.flowRate, c.time.end) / area;
+    const double speed = largestSize(*o.flowRate, 0, c.time.end) / area;
     drives.speed = std::max(drives.speed, speed);
     drives.shear = std::max(drives.shear, resistance * speed * std::max(longest, width) / (width * width));
   }

@@ -4,6 +4,9 @@
 
 namespace treacle {
 
+/// The largest size of a function of time in a part of the run [s], among many times; of a table that of its rows.
+double largestSize(const TimeFunction& f, double from, double to);
+
 /// Shortest side of an opening, or distance between the radii of a ring [m].
 double widthOf(const Nozzle& n, int dimensions);
 

@@ -30,12 +30,13 @@ double shortestSide(const Case& c, const Body& body) {
   return std::isfinite(side) ? side : period;
 }
 
-/// Of the fastest column. For an expression what it is at the start counts.
+/// Of the fastest column, while the nozzle flows.
 double inflowSpeed(const Case& c, const Body& body) {
   const Inflow& inflow = body.inflow;
   if (body.kind != BodyKind::Inflow || (!inflow.speed && !inflow.flowRate)) return 0;
   const TimeFunction& given = inflow.speed ? *inflow.speed : *inflow.flowRate;
-  const double most = given.isTable() ? *std::ranges::max_element(given.values) : given.at(inflow.start);
+  const double end = inflow.end > 0 ? std::min(inflow.end, c.time.end) : c.time.end;
+  const double most = largestSize(given, inflow.start, std::max(inflow.start, end));
   if (inflow.speed && inflow.profile == plugProfile) return most;
   const auto of = [&](const auto& layers) {
     return std::ranges::max(layers.profile()) * (inflow.speed ? most : most / layers.area());

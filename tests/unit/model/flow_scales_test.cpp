@@ -113,6 +113,24 @@ TEST(FlowScales, PressuresOfOpeningsMoveTheFluid) {
   EXPECT_NEAR(fluidNumbers(c)[0].compression, 500 / 1e6, 1e-12);
   c.materials[0] = fluid(1e-3);
   EXPECT_NEAR(fluidNumbers(c)[0].speed, std::sqrt(2 * 500 / 1000.0), 1e-12);
+/// Like those of openings, from its start to its end.
+TEST(FlowScales, FormulasOfNozzlesCountWhileTheyFlow) {
+  Case c = blockOf(fluid(10));
+  c.time.end = 1;
+  Body& nozzle = c.bodies.emplace_back();
+  nozzle.kind = BodyKind::Inflow;
+  nozzle.inflow.nozzle.radius = 3e-3;
+  nozzle.inflow.speed = TimeFunction{.expression = "0.5*min(t/0.1,1)"};
+  EXPECT_NEAR(flowScales(c).given, 0.5, 1e-15);
+  EXPECT_NEAR(inflowSpeed(c), 0.5, 1e-15);
+  nozzle.inflow.end = 0.05;
+  EXPECT_NEAR(inflowSpeed(c), 0.25, 1e-3);
+  nozzle.inflow.speed.reset();
+  nozzle.inflow.flowRate = TimeFunction{.expression = "1.2e-3*max(0, 1-t)"};
+  nozzle.inflow.start = 0.5, nozzle.inflow.end = 0;
+  EXPECT_NEAR(inflowSpeed(c), 0.1, 1e-12);
+}
+
 }
 
 TEST(FlowScales, FlowRatesOfOpeningsNeedAPressure) {

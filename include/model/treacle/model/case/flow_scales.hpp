@@ -29,7 +29,7 @@ struct FlowScales {
   }
 };
 
-/// The largest speed of fluid that comes out of a nozzle: of an expression that at the start counts [m/s].
+/// The largest speed of fluid that comes out of a nozzle in the run [m/s].
 double inflowSpeed(const Case& c);
 
 /// 0 where the case does not say. Errors: InputError for a nozzle in which no particle has room.
