@@ -1,5 +1,6 @@
 #include "treacle/model/case/checks.hpp"
 
+#include "body_thickness.hpp"
 #include "carried_fluids.hpp"
 #include "long_steps.hpp"
 #include "particles/body_points.hpp"
@@ -24,31 +25,6 @@ namespace {
 double layerThickness(const Shape& s) {
   const bool known = s.fill != FillKind::Inside && s.thickness > 0;
   return known ? s.thickness : std::numeric_limits<double>::infinity();
-}
-
-/// Thinnest extent of a wall before its transform, with the words that say where.
-std::pair<double, std::string> ownThickness(const Shape& s, int dimensions) {
-  if (s.kind == ShapeKind::Box) {
-    int thinnest = 0;
-    for (int k = 1; k < dimensions; ++k)
-      if (s.max[k] - s.min[k] < s.max[thinnest] - s.min[thinnest]) thinnest = k;
-    return {s.max[thinnest] - s.min[thinnest], std::string("along ") + "xyz"[thinnest]};
-  }
-  if (s.kind == ShapeKind::Torus)
-    return {s.innerRadius > 0 ? s.tubeRadius - s.innerRadius : 2 * s.tubeRadius, "across its tube"};
-  if (s.kind == ShapeKind::Cone) {
-    const bool hollow = s.innerStartRadius > 0 || s.innerEndRadius > 0;
-    const double widest = 2 * std::max(s.startRadius, s.endRadius);
-    const double across =
-        hollow ? std::max(s.startRadius - s.innerStartRadius, s.endRadius - s.innerEndRadius) : widest;
-    const double length = norm(s.end - s.start);
-    return length < across ? std::pair{length, std::string("along its axis")}
-                           : std::pair{across, std::string(hollow ? "between its radii" : "across")};
-  }
-  const double radial = s.innerRadius > 0 ? s.radius - s.innerRadius : 2 * s.radius;
-  const double length = norm(s.end - s.start);
-  if (s.kind == ShapeKind::Cylinder && length < radial) return {length, "along its axis"};
-  return {radial, s.innerRadius > 0 ? "between its radii" : "across"};
 }
 
 /// The same as it stands in the case [m]; infinite where it is not known.

@@ -1,5 +1,6 @@
 #include "treacle/model/case/flow_scales.hpp"
 
+#include "body_thickness.hpp"
 #include "drives.hpp"
 #include "particles/fluid_extent.hpp"
 #include "treacle/model/motion/nozzle.hpp"
@@ -7,27 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 
 namespace treacle {
 namespace {
 
-/// A body that goes on across periodic ends has no side there, but for one that does so along all axes.
 double shortestSide(const Case& c, const Body& body) {
-  if (body.kind == BodyKind::Inflow) return widthOf(body.inflow.nozzle, c.dimensions);
-  const auto& periodic = c.domain.periodic;
-  const bool own = body.shape.transform && std::ranges::none_of(periodic, std::identity{});  // before it is turned
-  const Extent box = own ? untransformedBox(body.shape, c.dimensions) : boundingBox(body.shape, c.dimensions);
-  const double scale = own ? body.shape.transform->scale : 1;
-  double side = std::numeric_limits<double>::infinity(), period = side;
-  for (int k = 0; k < c.dimensions; ++k) {
-    const double extent = scale * (box.max[k] - box.min[k]), length = c.domain.max[k] - c.domain.min[k];
-    const bool goesOn = periodic[static_cast<std::size_t>(k)] && extent > length - c.spacing;
-    double& least = goesOn ? period : side;
-    least = std::min(least, extent);
-  }
-  return std::isfinite(side) ? side : period;
+  return body.kind == BodyKind::Inflow ? widthOf(body.inflow.nozzle, c.dimensions) : fluidThickness(c, body);
 }
 
 /// Of the fastest column, while the nozzle flows.

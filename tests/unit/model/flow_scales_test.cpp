@@ -75,6 +75,25 @@ TEST(FlowScales, FluidHasNoSideAlongAPeriodicAxis) {
   EXPECT_NEAR(flowScales(c).length, 10e-3, 1e-15);
 }
 
+/// Not the boxes around them.
+TEST(FlowScales, HollowAndObliqueBodiesAreAsThickAsTheirFluid) {
+  Case c = blockOf(fluid(10));
+  Shape& s = c.bodies[0].shape;
+  s.kind = ShapeKind::Sphere, s.radius = 15e-3, s.innerRadius = 11e-3;
+  EXPECT_NEAR(flowScales(c).length, 4e-3, 1e-12);
+  s.innerRadius = 0, c.bodies[0].where = "x^2 + y^2 > 0.011^2";
+  EXPECT_NEAR(flowScales(c).length, 4e-3, 0.4e-3);
+  s.radius = 0, s.kind = ShapeKind::Box, c.bodies[0].where = "y < 0.005 || x < 0.003";
+  EXPECT_NEAR(flowScales(c).length, 5e-3, 1e-3);
+  c.bodies[0].where = "";
+  s.kind = ShapeKind::Polygon;
+  s.points = {{0, 0}, {4e-3, 0}, {24e-3, 20e-3}, {20e-3, 20e-3}};  // a strip of 2.8 mm
+  EXPECT_NEAR(flowScales(c).length, 4e-3 / std::sqrt(2), 0.3e-3);
+  c.dimensions = 3;
+  s.kind = ShapeKind::Cylinder, s.start = {}, s.end = {0.02, 0.02, 0.02}, s.radius = 4e-3;
+  EXPECT_NEAR(flowScales(c).length, 8e-3, 1e-12);
+}
+
 TEST(FlowScales, NozzlesCountByWidthAndSpeed) {
   Case c = blockOf(fluid(10));
   Body nozzle;
@@ -92,6 +111,24 @@ TEST(FlowScales, NozzlesCountByWidthAndSpeed) {
   c.bodies.back().inflow.nozzle.innerRadius = 1e-3;  // a ring
   EXPECT_NEAR(flowScales(c).length, 2e-3, 1e-15);
   EXPECT_NEAR(fluidNumbers(c).at(0).speed, 0.7, 1e-15);
+}
+
+/// Like those of openings, from its start to its end.
+TEST(FlowScales, FormulasOfNozzlesCountWhileTheyFlow) {
+  Case c = blockOf(fluid(10));
+  c.time.end = 1;
+  Body& nozzle = c.bodies.emplace_back();
+  nozzle.kind = BodyKind::Inflow;
+  nozzle.inflow.nozzle.radius = 3e-3;
+  nozzle.inflow.speed = TimeFunction{.expression = "0.5*min(t/0.1,1)"};
+  EXPECT_NEAR(flowScales(c).given, 0.5, 1e-15);
+  EXPECT_NEAR(inflowSpeed(c), 0.5, 1e-15);
+  nozzle.inflow.end = 0.05;
+  EXPECT_NEAR(inflowSpeed(c), 0.25, 1e-3);
+  nozzle.inflow.speed.reset();
+  nozzle.inflow.flowRate = TimeFunction{.expression = "1.2e-3*max(0, 1-t)"};
+  nozzle.inflow.start = 0.5, nozzle.inflow.end = 0;
+  EXPECT_NEAR(inflowSpeed(c), 0.1, 1e-12);
 }
 
 Opening slot(double width) {
@@ -113,24 +150,6 @@ TEST(FlowScales, PressuresOfOpeningsMoveTheFluid) {
   EXPECT_NEAR(fluidNumbers(c)[0].compression, 500 / 1e6, 1e-12);
   c.materials[0] = fluid(1e-3);
   EXPECT_NEAR(fluidNumbers(c)[0].speed, std::sqrt(2 * 500 / 1000.0), 1e-12);
-/// Like those of openings, from its start to its end.
-TEST(FlowScales, FormulasOfNozzlesCountWhileTheyFlow) {
-  Case c = blockOf(fluid(10));
-  c.time.end = 1;
-  Body& nozzle = c.bodies.emplace_back();
-  nozzle.kind = BodyKind::Inflow;
-  nozzle.inflow.nozzle.radius = 3e-3;
-  nozzle.inflow.speed = TimeFunction{.expression = "0.5*min(t/0.1,1)"};
-  EXPECT_NEAR(flowScales(c).given, 0.5, 1e-15);
-  EXPECT_NEAR(inflowSpeed(c), 0.5, 1e-15);
-  nozzle.inflow.end = 0.05;
-  EXPECT_NEAR(inflowSpeed(c), 0.25, 1e-3);
-  nozzle.inflow.speed.reset();
-  nozzle.inflow.flowRate = TimeFunction{.expression = "1.2e-3*max(0, 1-t)"};
-  nozzle.inflow.start = 0.5, nozzle.inflow.end = 0;
-  EXPECT_NEAR(inflowSpeed(c), 0.1, 1e-12);
-}
-
 }
 
 TEST(FlowScales, FlowRatesOfOpeningsNeedAPressure) {

@@ -10,7 +10,7 @@ namespace treacle {
 
 /// What a case says beforehand about the size and speed of its flow (docs/choosing.md).
 struct FlowScales {
-  double length = 0;        // L: shortest side of a box around a fluid body, or of a nozzle [m]
+  double length = 0;        // L: shortest side of a fluid body or nozzle (fluidThickness) [m]
   double acceleration = 0;  // largest of gravity and centrifugal forces [m/s2]
   double potential = 0;     // work that they do per mass across the fluid: g H, in a frame that turns more [m2/s2]
   double fall = 0;          // speed that they give [m/s]
