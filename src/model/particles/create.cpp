@@ -7,28 +7,21 @@
 #include "treacle/model/geometry/side_map.hpp"
 #include "treacle/model/geometry/wall_surface.hpp"
 
-#include "body_points.hpp"
+#include "filled.hpp"
 #include "geometry/mesh_notes.hpp"
 #include "geometry/point_boxes.hpp"
 #include "lattice.hpp"
 #include "overlap.hpp"
+#include "reserve.hpp"
 #include "treacle/model/geometry/point_grid.hpp"
-#include "treacle/model/motion/opening.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace treacle {
 namespace {
-
-template <int D>
-struct Filled {
-  const Body* body;
-  BodyPoints<D> points;
-};
 
 /// The points of all bodies of one kind, not yet freed of overlaps.
 template <int D>
@@ -61,41 +54,6 @@ void subtract(const Domain& domain, double radius, const std::vector<const std::
     for (const Filled<D>* other : others)
       for (const Vec<D>& x : other->points.place) grid.add(x, 0);
     f.points.filter([&](std::size_t k) { return grid.find(f.points.place[k]) == PointGrid<D>::none; });
-  }
-}
-
-template <int D>
-std::size_t total(const std::vector<Filled<D>>& filled) {
-  std::size_t count = 0;
-  for (const Filled<D>& f : filled) count += f.points.size();
-  return count;
-}
-
-/// Takes out fluid behind the reserves of openings, up to the first layer without any. Notes how much, as there is
-/// none but where a direction is the wrong one, or a body is longer than its reserve.
-template <int D>
-void clearBehindReserves(const Case& c, std::vector<Filled<D>>& fluid, std::vector<std::string>& notes) {
-  for (const Opening& o : c.openings) {
-    const OpeningForce<D> opening = OpeningFace<D>(c, o).place();
-    const double from = opening.depth + 0.5;  // as in the steps (OutflowRegion)
-    const auto layerOf = [&](const Vec<D>& x) { return std::floor(opening.behind(x) - from); };
-    std::set<double> layers;
-    for (const Filled<D>& f : fluid)
-      for (const Vec<D>& x : f.points.place)
-        if (opening.isAcross(x, 0.5)) layers.insert(layerOf(x));
-    double end = 0;
-    while (layers.contains(end)) ++end;
-    const std::size_t all = total(fluid);
-    for (Filled<D>& f : fluid)
-      f.points.filter([&](std::size_t k) {
-        const Vec<D>& x = f.points.place[k];
-        return !opening.isAcross(x, 0.5) || layerOf(x) < 0 || layerOf(x) >= end;
-      });
-    if (const std::size_t left = all - total(fluid); left > 0)
-      notes.push_back(
-          fmt::format("opening '{}': {} of {} fluid particles left out, which are behind its reserve of {}; its "
-                      "direction is to lead into the fluid",
-                      o.name, left, all, lengthText(from * c.spacing)));
   }
 }
 
@@ -328,6 +286,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   Place next{part.begin(fluidCount), part.end(fluidCount)};
   append(c, BodyKind::Fluid, fluid, particles, next);
   next.first = fluidCount + part.begin(wallCount), next.end = fluidCount + part.end(wallCount);
+  requireReserves<D>(c, overlap, notes);
   append(c, BodyKind::Wall, walls, particles, next);
   if (needsWallSurfaces(c)) {
     std::vector<std::string> untold;

@@ -543,10 +543,50 @@ TEST(createParticles, tellsOfFluidBehindReserves) {
   EXPECT_EQ(createParticles<2>(c, notes).fluidCount, 200u - 60);
   EXPECT_THAT(notes,
               ElementsAre("opening 'end': 60 of 200 fluid particles left out, which are behind its reserve of "
-                          "7.5 m; its direction is to lead into the fluid"));
+                          "7 m; its direction is to lead into the fluid"));
   o.face.center = {7, 5}, notes.clear();
   createParticles<2>(c, notes);
   EXPECT_THAT(notes, IsEmpty());
+}
+
+/// Wherever the lattice is, rounding leaves no gap.
+TEST(createParticles, leavesOutAllFluidBehindReserves) {
+  Case c = emptyCase(2);
+  c.spacing = 1e-3;
+  c.bodies = {makeBody("channel", BodyKind::Fluid, box({-0.04, 0}, {0.02, 0.01}))};
+  Opening& o = c.openings.emplace_back();
+  o.name = "in", o.face.kind = NozzleKind::Rectangle, o.face.width = 0.01, o.face.direction = {1, 0};
+  for (const double shift : {0.0, 0.1, 0.3, 0.5, 0.7}) {
+    o.face.center = {shift * 1e-3, 0.005};
+    std::vector<std::string> notes;
+    for (const Vec<2>& x : createParticles<2>(c, notes).position) EXPECT_GT(x[0], -8.5e-3) << shift;
+    EXPECT_EQ(notes.size(), 1u);
+  }
+  c.bodies.push_back(makeBody("tank", BodyKind::Fluid, box({-0.08, 0}, {-0.06, 0.01})));  // another one
+  std::vector<std::string> notes;
+  EXPECT_GT(createParticles<2>(c, notes).fluidCount, 400u);
+}
+
+TEST(createParticles, tellsOfWallsInReserves) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("channel", BodyKind::Fluid, box({-7, 0}, {20, 10})),
+              makeBody("low", BodyKind::Wall, box({-9, -4}, {20, 0})),
+              makeBody("high", BodyKind::Wall, box({-9, 10}, {20, 14}))};
+  Opening& o = c.openings.emplace_back();
+  o.name = "in", o.face.kind = NozzleKind::Rectangle, o.face.width = 10;
+  o.face.center = {0, 5}, o.face.direction = {1, 0};
+  std::vector<std::string> notes;
+  createParticles<2>(c, notes);
+  EXPECT_THAT(notes, IsEmpty());
+  c.bodies.push_back(makeBody("end", BodyKind::Wall, box({-11, 0}, {-7, 10})));
+  createParticles<2>(c, notes);
+  EXPECT_THAT(notes,
+              ElementsAre("opening 'in': 10 of the 80 places of its reserve are inside wall 'end'; expected "
+                          "a channel as wide as the face that goes on behind it for 8 spacings, 8 m"));
+  c.bodies.back().shape = box({-14, 0}, {0, 10});
+  c.bodies.front().shape = box({0, 0}, {20, 10});
+  EXPECT_THAT(messageOfCreation<2>(c),
+              HasSubstr("opening 'in': 80 of the 80 places of its reserve are inside wall"));
 }
 
 TEST(createParticles, rejectsCaseWithoutFluid) {
