@@ -120,7 +120,8 @@ void requireNoNozzle(const Body& a, const Body& b, const Vec<D>& x) {
 template <int D>
 void unite(const Case& c, BodyKind kind, const Overlap<D>& overlap, std::vector<Filled<D>>& filled,
            std::vector<std::string>& notes) {
-  const double radius = kind == BodyKind::Fluid ? overlap.reach() : overlap.radius();
+  const bool shapes = kind == BodyKind::Fluid || c.hasRigid() || c.hasInflow();  // which count beside particles
+  const double radius = shapes ? overlap.reach() : overlap.radius();
   const PointBoxes<D> boxes = boxesOf<D>(c.domain, radius, {&filled});
   PointGrid<D> grid = gridFor(c.domain, radius, filled, boxes);
   for (std::uint32_t b = 0; b < filled.size(); ++b) {
@@ -129,12 +130,15 @@ void unite(const Case& c, BodyKind kind, const Overlap<D>& overlap, std::vector<
     if (near.empty()) continue;
     const std::size_t all = points.size();
     std::uint32_t other = PointGrid<D>::none;
-    const auto taken = [&](std::uint32_t tag, const Vec<D>& point, const Vec<D>& x) {
-      return overlap.areClose(point, x) || (tag != b && overlap.isInside(*filled[tag].body, x));
-    };
     points.filter([&](std::size_t k) {
       const Vec<D>& x = points.place[k];
       if (!near.contain(x)) return true;
+      const auto taken = [&](std::uint32_t tag, const Vec<D>& point, const Vec<D>& image) {
+        if (overlap.areClose(point, image)) return true;
+        const Body &later = *filled[b].body, &earlier = *filled[tag].body;
+        if (kind == BodyKind::Fluid) return tag != b && overlap.isInside(earlier, image);
+        return overlap.isTaken(later, image, earlier, point - (image - x));
+      };
       if (const std::uint32_t tag = grid.find(x, taken); tag != PointGrid<D>::none) {
         other = tag;
         if (kind == BodyKind::Wall) requireNoNozzle(*filled[b].body, *filled[other].body, x);
@@ -143,10 +147,30 @@ void unite(const Case& c, BodyKind kind, const Overlap<D>& overlap, std::vector<
       grid.add(x, b);
       return true;
     });
+    if (points.size() == 0 && all > 0 && filled[b].body->kind == BodyKind::Rigid)
+      throw InputError(
+          fmt::format("rigid body '{}' has no particles: the place of all {} is taken by {} '{}'; move "
+                      "one of the two, or leave one out",
+                      filled[b].body->name, all, nameOf(filled[other].body->kind), filled[other].body->name));
     if (points.size() < all)
       notes.push_back(fmt::format("body '{}': {} of {} particles left out, their place is taken by body '{}'",
                                   filled[b].body->name, all - points.size(), all, filled[other].body->name));
   }
+}
+
+/// An inflow neither subtracts nor is subtracted.
+std::string adviceForRoom(const Body& fluid, const Body& wall) {
+  if (fluid.kind == BodyKind::Inflow)
+    return fmt::format(
+        "the nozzle needs a spacing of room in front of it: move it, or shape '{}' so that it leaves "
+        "the room, such as by its where",
+        wall.name);
+  if (wall.kind == BodyKind::Inflow)
+    return fmt::format(
+        "the nozzle needs its room: move it, or shape '{}' so that it leaves the room, such as by its "
+        "where",
+        fluid.name);
+  return fmt::format("subtract = [\"{}\"] of '{}' leaves it the room", wall.name, fluid.name);
 }
 
 /// Errors: InputError for the first wall that shares places with the fluid.
@@ -175,13 +199,13 @@ void requireApart(const Case& c, const Overlap<D>& overlap, const std::vector<Fi
       if (const std::uint32_t tag = grid.find(x, shared); tag != PointGrid<D>::none) hits.push_back({tag, x});
     }
     if (hits.empty()) continue;
-    const std::string& name = fluid[hits[0].first].body->name;
+    const Body& in = *fluid[hits[0].first].body;
     throw InputError(
-        fmt::format("fluid body '{}' and wall body '{}' overlap: {} wall particle{} {}the fluid, the first at {}; "
-                    "subtract = [\"{}\"] of '{}' leaves it the room",
-                    name, wall.body->name, hits.size(), hits.size() == 1 ? "" : "s",
-                    close ? "closer than half a spacing to " : "in the place of ",
-                    positionText(resized<3>(hits[0].second), D), wall.body->name, name));
+        fmt::format("{} '{}' and {} '{}' overlap: {} wall particle{} {}the fluid, the first at {}; {}",
+                    in.kind == BodyKind::Inflow ? "inflow" : "fluid body", in.name,
+                    wall.body->kind == BodyKind::Inflow ? "inflow" : "wall body", wall.body->name, hits.size(),
+                    hits.size() == 1 ? "" : "s", close ? "closer than half a spacing to " : "in the place of ",
+                    positionText(resized<3>(hits[0].second), D), adviceForRoom(in, *wall.body)));
   }
 }
 
@@ -262,6 +286,7 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   const double radius = overlap.radius();
   subtract<D>(c.domain, radius, {&fluid, &walls}, fluid);
   subtract<D>(c.domain, radius, {&fluid, &walls}, walls);
+  requireReserves<D>(c, overlap, notes);
   clearBehindReserves<D>(c, fluid, notes);
   if (total(fluid) == 0 && !c.hasInflow())
     throw InputError("the case has no fluid: no body of type \"fluid\" holds a particle" + sizesOfFluid(c));
@@ -286,7 +311,6 @@ Particles<D> createParticles(const Case& c, std::vector<std::string>& notes, std
   Place next{part.begin(fluidCount), part.end(fluidCount)};
   append(c, BodyKind::Fluid, fluid, particles, next);
   next.first = fluidCount + part.begin(wallCount), next.end = fluidCount + part.end(wallCount);
-  requireReserves<D>(c, overlap, notes);
   append(c, BodyKind::Wall, walls, particles, next);
   if (needsWallSurfaces(c)) {
     std::vector<std::string> untold;

@@ -76,8 +76,8 @@ Lattice<D> boxLattice(const Case& c, const Body& body, double spacing, std::vect
     if (fromMax) lattice.origin[k] = max - (count - 0.5) * spacing;
     notes.push_back(fmt::format(
         "body '{}': {} along {} is {:.6g} spacings; filled with {:.0f} particle{} from its {} corner ({})",
-        body.name, lengthText(max - min), "xyz"[k], spacings, count, count == 1 ? "" : "s",
-        fromMax ? "max" : "min", lengthText(count * spacing)));
+        body.name, lengthText(spacings * c.spacing), "xyz"[k], spacings, count, count == 1 ? "" : "s",
+        fromMax ? "max" : "min", lengthText(count * c.spacing)));
   }
   return lattice;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/body_region.hpp"
+#include "nozzle_region.hpp"
 #include "treacle/model/case/case.hpp"
 
 #include <memory>
@@ -25,15 +26,22 @@ class Overlap {
   /// Whether a place is a clear part of a spacing inside what a body fills. Inflows and particles of a file have
   /// no shape.
   bool isInside(const Body& body, const Vec<D>& x) const;
+  /// Whether a particle of a solid is in the place of one of an earlier solid within reach of it. Walls may stand
+  /// in each other, bodies that move may not: a rigid body is as its shape, a nozzle needs all of its room. `at`
+  /// and `earlierAt` are as they see each other across periodic ends.
+  bool isTaken(const Body& solid, const Vec<D>& at, const Body& earlier, const Vec<D>& earlierAt) const;
   /// Whether a particle of fluid and one of a wall, within reach of each other, share a place: one of them is
   /// inside the body of the other. `fluidAt`: where the former is as the wall sees it across periodic ends,
   /// `wallAt` likewise. Where a body subtracts the other one it has left it the room.
   bool sharePlace(const Body& fluid, const Vec<D>& fluidAt, const Body& wall, const Vec<D>& wallAt) const;
 
  private:
+  bool isInNozzle(const Body& body, const Vec<D>& x) const;
+
   const Case& case_;
   double radius_, reach_, depth_;
-  mutable std::vector<std::unique_ptr<const BodyRegion<D>>> regions_;  // of bodies, as they are needed
+  mutable std::vector<std::unique_ptr<const BodyRegion<D>>> regions_;    // of bodies, as they are needed
+  mutable std::vector<std::unique_ptr<const NozzleRegion<D>>> nozzles_;  // likewise
 };
 
 extern template class Overlap<2>;

@@ -212,7 +212,7 @@ TEST(OpenCase, ANozzleNeedsItsRoom) {
   EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,1e-3]", "jet.nozzle.direction=[0,1]"}),
               HasSubstr("inflow 'jet' and wall 'floor' overlap at"));
   EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,0.2e-3]"}),
-              HasSubstr("fluid body 'jet' and wall body 'floor' overlap"));
+              HasSubstr("inflow 'jet' and wall body 'floor' overlap"));
   EXPECT_THAT(messageOfCreation({"jet.nozzle.center=[0,12e-3]"}),
               HasSubstr("body 'jet' reaches out of the domain"));
 }

@@ -589,6 +589,74 @@ TEST(createParticles, tellsOfWallsInReserves) {
               HasSubstr("opening 'in': 80 of the 80 places of its reserve are inside wall"));
 }
 
+/// Lattices that are half a spacing apart: no particle is closer than that to one of the other.
+TEST(createParticles, rigidBodiesStandInNoOtherSolid) {
+  Case c = emptyCase(3);
+  c.bodies = {makeBody("pool", BodyKind::Fluid, box({-20, -20, 0}, {-10, -10, 4})),
+              makeBody("floor", BodyKind::Wall, box({-10, -10, -4}, {10, 10, 0})),
+              makeBody("ball", BodyKind::Rigid, sphere({0, 0, 3}, 3))};
+  std::vector<std::string> notes;
+  createParticles<3>(c, notes);
+  EXPECT_THAT(notes, IsEmpty());
+  c.bodies[2].shape = sphere({0, 0, 1}, 3);
+  createParticles<3>(c, notes);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_THAT(notes[0],
+              HasSubstr("body 'ball': 22 of 123 particles left out, their place is taken by body 'floor'"));
+  c.bodies[2].shape = sphere({0, 0, 3}, 3);
+  c.bodies.push_back(makeBody("other", BodyKind::Rigid, box({-2, -2, 4}, {3, 3, 9})));
+  notes.clear();
+  createParticles<3>(c, notes);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_THAT(notes[0], HasSubstr("taken by body 'ball'"));
+  c.bodies[3].shape = c.bodies[2].shape;
+  EXPECT_THAT(messageOfCreation<3>(c),
+              HasSubstr("rigid body 'other' has no particles: the place of all 123 is taken by rigid 'ball'"));
+  c.bodies[3].shape = box({-2, -2, 4}, {3, 3, 9});
+  c.bodies[3].kind = c.bodies[2].kind = BodyKind::Wall;  // these may
+  notes.clear();
+  createParticles<3>(c, notes);
+  EXPECT_THAT(notes, IsEmpty());
+}
+
+/// As they stand in the case.
+TEST(createParticles, lengthsInNotesAreScaled) {
+  Case c = emptyCase(2);
+  c.bodies = {makeBody("pool", BodyKind::Fluid, box({0, 0}, {10, 15}))};
+  c.bodies[0].shape.transform.emplace().scale = 1.5;
+  std::vector<std::string> notes;
+  createParticles<2>(c, notes);
+  EXPECT_THAT(notes,
+              ElementsAre("body 'pool': 22.5 m along y is 22.5 spacings; filled with 23 particles from its min "
+                          "corner (23 m)"));
+}
+
+Body nozzle(std::string name, Vec<3> center) {
+  Body body = makeBody(std::move(name), BodyKind::Inflow, {});
+  body.inflow.speed = TimeFunction{.value = 1};
+  body.inflow.nozzle.center = center, body.inflow.nozzle.direction = {0, 0, -1};
+  body.inflow.nozzle.radius = 3;
+  return body;
+}
+
+TEST(createParticles, nozzlesNeedTheirRoomOnShiftedLattices) {
+  Case c = emptyCase(3);
+  c.bodies = {nozzle("n", {0, 0, 15}), makeBody("lid", BodyKind::Wall, box({-10.5, -10.5, 15}, {9.5, 9.5, 22}))};
+  EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("inflow 'n' and wall 'lid' overlap"));
+  c.bodies[1].shape = box({-10.5, -10.5, 11}, {9.5, 9.5, 15});  // in its way
+  EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("inflow 'n' and wall body 'lid' overlap: "));
+  EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("the nozzle needs a spacing of room in front of it: move it, or "
+                                                 "shape 'lid' so that it leaves the room, such as by its where"));
+  c.bodies[1].shape = cylinder({0, 0, 15}, {0, 0, 22}, 6, 3);  // a pipe
+  EXPECT_EQ(messageOfCreation<3>(c), "no error");
+  c.bodies[1] = nozzle("m", {0.5, 0.5, 15.5});
+  EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("inflow 'm' and inflow 'n' overlap"));
+  c.bodies[1] = nozzle("m", {6, 0, 15.5});
+  EXPECT_EQ(messageOfCreation<3>(c), "no error");
+  c.bodies[1] = makeBody("pool", BodyKind::Fluid, box({-4.5, -4.5, 16.5}, {5.5, 5.5, 22.5}));
+  EXPECT_THAT(messageOfCreation<3>(c), HasSubstr("fluid body 'pool' and inflow 'n' overlap"));
+}
+
 TEST(createParticles, rejectsCaseWithoutFluid) {
   Case c = emptyCase(2);
   c.bodies = {makeBody("floor", BodyKind::Wall, box({0, -4}, {10, 0}))};
