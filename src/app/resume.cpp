@@ -196,6 +196,24 @@ void setMasses(const Case& c, const MadeParticles& made, Particles<D>& state) {
   }
 }
 
+/// A body that the case lets go later only, but that was free in the run, stands still until then.
+template <int D>
+void holdBodies(const Case& c, Checkpoint<D>& state, std::vector<std::string>& changes) {
+  Particles<D>& p = state.particles;
+  for (std::size_t b = 0; b < p.rigid.bodies.size(); ++b) {
+    RigidBody& body = p.rigid.bodies[b];
+    const double release = c.bodies[b].rigid.release;
+    const bool isHeld = body.mass > 0 && state.time < release - 0.5 * c.time.step;  // as in the steps
+    if (!isHeld || (norm(body.velocity) == 0 && norm(body.spin) == 0)) continue;
+    body.velocity = body.spin = {};
+    for (std::uint32_t i = p.wallBegin(); i < p.count; ++i)
+      if (p.body[i] == b) p.velocity[i] = {};
+    p.rigid.change.clear(), p.response.clear();
+    changes.push_back(fmt::format("--resume: body '{}' is held and stands still until its release at t = {:g} s",
+                                  c.bodies[b].name, release));
+  }
+}
+
 /// The layers of an inflow stand where the state says, so its nozzle must be where it was in the run. Nozzles that
 /// turn are not checked. Errors: InputError.
 template <int D>
@@ -314,6 +332,7 @@ StartState fittingState(const Case& c, const std::filesystem::path& file, const 
     requireFlow(c, file, state.particles.flow);
     requireColumns<D>(c, file, state.particles.flow);
     setMasses<D>(c, made, state.particles);
+    holdBodies<D>(c, state, changes);
     requireBodies(c, file, state.particles);
     const std::uint32_t firstWall = state.firstWall + made.part.begin(kinds.walls);
     requireNozzles(c, file, created, firstWall, state);

@@ -14,6 +14,7 @@ namespace treacle::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 /// A workshop with 8 steps of the small case on a moving floor in case.toml.
@@ -285,6 +286,32 @@ max = [10e-3, 6e-3]
                     again = height(resume + " --set stone.mass=4e-3");  // of its particles
   EXPECT_NE(heavier, same);
   EXPECT_EQ(again, same);
+}
+
+/// Whatever its speed was.
+TEST(resume, holdsBodiesUntilALaterRelease) {
+  Workshop shop;
+  shop.put("case.toml", smallCase + R"(
+[[body]]
+name = "stone"
+type = "rigid"
+material = "syrup"
+shape = "box"
+min = [8e-3, 4e-3]
+max = [10e-3, 6e-3]
+)");
+  ASSERT_EQ(shop.call("run case.toml --threads 1 --end-time 4e-3 -o part").exitCode, 0);
+  const RigidBody falling = readCheckpoint<2>(shop / "part/checkpoint.h5").particles.rigid.bodies[2];
+  EXPECT_LT(falling.velocity[1], -0.01);
+  const std::string rest = "run case.toml --threads 1 --force -o rest --end-time 8e-3 --resume part/checkpoint.h5";
+  const Outcome outcome = shop.call(rest + " --set stone.release=0.1");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_THAT(outcome.err,
+              HasSubstr("--resume: body 'stone' is held and stands still until its release at t = 0.1 s"));
+  const RigidBody held = readCheckpoint<2>(shop / "rest/checkpoint.h5").particles.rigid.bodies[2];
+  EXPECT_EQ(held.center, falling.center);
+  EXPECT_EQ(held.velocity, Vec<3>{});
+  EXPECT_THAT(shop.call(rest + " --set stone.release=1e-3").err, Not(HasSubstr("is held")));
 }
 
 TEST(resume, refusesTheStateOfAnotherMethod) {
