@@ -42,7 +42,7 @@ Case caseOf(const toml::table& document, const std::filesystem::path& folder, Sh
   try {
     if (width) applyWidth(c, *width);
     if (files == ShapeFiles::Read) readShapeFiles(c, folder);
-    requireValidMaterials(c);
+    requireValidMaterialsAndInflows(c);
     setGravity(c);
     setBulkConstants(c);
     setStepBounds(c);  // which follow from materials, and from where bodies are

@@ -243,8 +243,10 @@ void requireValid(const Case& c) { Checker(c, {}).check(c); }
 
 void requireValid(const Width& width, const Case& c) { Checker(c, {"width"}).check(width); }
 
-void requireValidMaterials(const Case& c) {
+void requireValidMaterialsAndInflows(const Case& c) {
   for (const Material& m : c.materials) Checker(c, {"material", m.name}).check(m);
+  for (const Body& b : c.bodies)
+    if (b.kind == BodyKind::Inflow) Checker(c, {"body", b.name}).check(b);
 }
 
 }  // namespace treacle

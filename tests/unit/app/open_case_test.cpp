@@ -197,6 +197,21 @@ TEST(OpenCase, APolygonHasNoParabolicProfile) {
   EXPECT_THAT(messageOf<InputError>([&] { requireValid(c); }),
               HasSubstr("body.jet.profile: \"parabolic\" is for a disc or a rectangle; expected \"plug\" or an "
                         "expression of x, y and z for a polygon"));
+
+  Workshop shop;
+  std::string text = replaced(pouring, "dimensions = 2", "dimensions = 3");
+  text = replaced(text, ", bulk_viscosity = 1e4, bulk_modulus = 1e6", "");  // which follow from the nozzle
+  text =
+      replaced(text, "[-10e-3, -4e-3], max = [10e-3, 14e-3]", "[-0.01, -0.01, -0.01], max = [0.01, 0.02, 0.01]");
+  text = replaced(text, "acceleration = [0, -10]", "acceleration = [0, -10, 0]");
+  text = replaced(text, "[0, 8e-3], direction = [0, -1], width = 4e-3",
+                  "[0, 8e-3, 0], direction = [0, -1, 0], points = [[-2e-3, -2e-3], [2e-3, -2e-3], [0, 2e-3]]");
+  text = replaced(text, "speed = 0.2,", "speed = 0.2, profile = \"parabolic\",");
+  text = replaced(text, "shape = \"rectangle\"", "shape = \"polygon\"");
+  text = replaced(text, "[-10e-3, -4e-3], max = [10e-3, 0]", "[-0.01, -4e-3, -0.01], max = [0.01, 0, 0.01]");
+  shop.put("case.toml", text.substr(0, text.find("outflow")));
+  EXPECT_THAT(messageOf<InputError>([&] { readCase(shop / "case.toml"); }),
+              HasSubstr("profile in [[body]] 'jet' (inflow): \"parabolic\" is for a disc or a rectangle"));
 }
 
 std::string messageOfCreation(const std::vector<std::string>& overrides) {

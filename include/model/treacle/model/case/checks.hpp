@@ -14,9 +14,9 @@ inline constexpr double maxSteps = 1e15;
 /// Whether a case can be run, as far as that can be said without its particles: each value by itself, as
 /// keys::visit bounds it, and what values must be together. Errors: CaseError, for the first that cannot be used.
 void requireValid(const Case& c);
-/// The same for a width of the case, and for its materials alone.
+/// The same for a width of the case, and for what decides on bulk constants alone.
 void requireValid(const Width& width, const Case& c);
-void requireValidMaterials(const Case& c);
+void requireValidMaterialsAndInflows(const Case& c);
 
 /// Dimensionless numbers of one material at the case's time step and spacing.
 struct StabilityNumbers {
