@@ -213,16 +213,6 @@ class StateStart:
 
 
 @dataclass(kw_only=True)
-class Oscillation:
-    amplitude: Sequence[float] | None = None
-    """[m]"""
-    period: float | None = None
-    """[s]"""
-    phase: float | None = None
-    """[rad]"""
-
-
-@dataclass(kw_only=True)
 class Transform:
     scale: float | None = None
     angle: float | None = None
@@ -235,6 +225,16 @@ class Transform:
     """[any unit]"""
     angles: Sequence[float] | None = None
     """[deg]"""
+
+
+@dataclass(kw_only=True)
+class Oscillation:
+    amplitude: Sequence[float] | None = None
+    """[m]"""
+    period: float | None = None
+    """[s]"""
+    phase: float | None = None
+    """[rad]"""
 
 
 @dataclass(kw_only=True)
@@ -296,10 +296,6 @@ class Body:
     """[spacings]"""
     viscosity_factor: float | str | None = None
     state: Sequence[StateStart] | None = None
-    oscillation: Oscillation | None = None
-    displacement: Sequence[float | str | TimeTable] | None = None
-    """[m]"""
-    rotation: Rotation | None = None
     min: Sequence[float] | None = None
     """[m]"""
     max: Sequence[float] | None = None
@@ -334,6 +330,10 @@ class Body:
     checksum: str | None = None
     flip: bool | None = None
     file_velocities: bool | None = None
+    oscillation: Oscillation | None = None
+    displacement: Sequence[float | str | TimeTable] | None = None
+    """[m]"""
+    rotation: Rotation | None = None
     friction: float | None = None
     restitution: float | None = None
     nozzle: Nozzle | None = None

@@ -66,7 +66,7 @@ const Mistake heatMistakes[] = {
      "temperature in [[body]] 'column' (box): expected a positive number [K] or an expression, found -3"},
     {"column.wall_conductance=3", "unknown key 'wall_conductance' in [[body]] 'column' (box)"},
     {"floor.temperature='x'",
-     "temperature in [[body]] 'floor' (box): only a body of type \"fluid\" can have an expression, found \"x\""},
+     "temperature in [[body]] 'floor' (box): expected a number not less than 0 [K], found the string \"x\""},
     {"floor.temperature=0",
      "temperature in [[body]] 'floor' (box): missing; expected that of what is behind a wall with "
      "wall_conductance: a "

@@ -282,8 +282,12 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
   v({"where", "Only those particles are made at which this is not zero"}, b.where, expression);
   v({"subtract", "Names of bodies whose places it leaves to them, so that its particles do not overlap theirs"},
     b.subtract);
-  v({"velocity", "Velocity: of a fluid or rigid body at the start, of a wall for the whole run", optional, "m/s"},
-    b.velocity, b.velocityExpression);
+  const Key velocity{"velocity", "Velocity: of a fluid or rigid body at the start, of a wall for the whole run",
+                     optional, "m/s"};
+  if (b.kind == BodyKind::Fluid)
+    v(velocity, b.velocity, b.velocityExpression);
+  else
+    v(velocity, b.velocity);
   if (b.kind == BodyKind::Fluid)
     v({"disorder", "How far its particles stand off the lattice at the start, at random, along each axis at most",
        optional, "spacings", disorder},
@@ -304,7 +308,7 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
       b.states);
   if (b.kind == BodyKind::Rigid) {
     visit(v, b.rigid, c);
-  } else {
+  } else if (b.kind == BodyKind::Wall) {
     v({"oscillation", "The wall swings to and fro, on top of its velocity"}, b.oscillation);
     v({"displacement",
        "How far the wall is displaced in time, along each axis, on top of its velocity and oscillation", optional,
@@ -329,13 +333,12 @@ void visit(auto& v, Like<Body> auto& b, const Case& c) {
     if (ofFile)
       v({"file_temperatures", "Whether particles have the temperatures of the file, in place of temperature"},
         b.fileTemperatures);
-    if (!b.fileTemperatures)
-      v({"temperature",
-         "Of a fluid at the start; of a wall that of its surface, or with wall_conductance that behind it, 0 "
-         "being "
-         "an adiabatic wall",
-         fluid, "K", fluid ? positive : notNegative},
-        b.temperature, b.temperatureExpression);
+    const Key temperature{"temperature",
+                          "Of a fluid at the start; of a wall that of its surface, or with wall_conductance that "
+                          "behind it, 0 being an adiabatic wall",
+                          fluid, "K", fluid ? positive : notNegative};
+    if (fluid && !b.fileTemperatures) v(temperature, b.temperature, b.temperatureExpression);
+    if (!fluid) v(temperature, b.temperature);
     if (!fluid)
       v({"wall_conductance", "Conductivity of the wall over its thickness; 0: its surface has the temperature",
          optional, "W/(m2 K)", notNegative},
