@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -50,6 +52,15 @@ std::string columns(const Case& c, const Probe& p) {
                      c.dimensions == 2 ? ",torque" : ",torque_x,torque_y,torque_z");
 }
 
+/// A centre of particles as they count in a region: one that counts in part stands up to half a spacing outside.
+Vec<3> movedInside(const Probe& region, int dimensions, Vec<3> x) {
+  if (region.box)
+    for (int k = 0; k < dimensions; ++k) x[k] = std::clamp(x[k], region.box->min[k], region.box->max[k]);
+  if (const double square = norm2(region.normal); square > 0)
+    x = x - (std::max(0.0, dot(x - region.point, region.normal)) / square) * region.normal;
+  return x;
+}
+
 }  // namespace
 
 ProbeWriter::ProbeWriter(RowTarget to, const Case& c, const Probe& probe)
@@ -89,18 +100,20 @@ void ProbeWriter::append(double time, const Probe& now, const Frame& fluid, cons
 }
 
 /// Means are those by volume. A part without fluid has nan, of which 0/0 would have the sign that a processor
-/// likes.
+/// likes. So has one whose volume is the rounding of a surface.
 void ProbeWriter::append(double time, const Probe& now, const PartSums& s) {
   if (probe_.kind == ProbeKind::Flow) {
     const Vec<3> downstream = (1 / norm(now.normal)) * now.normal;
     return rows_.append(fmt::format("{},{},{}", time, dot(s.flow, downstream), dot(s.momentum, downstream)));
   }
-  const auto over = [](double sum, double all) {
-    return all > 0 ? sum / all : std::numeric_limits<double>::quiet_NaN();
-  };
-  const auto mean = [&](double sum) { return over(sum, s.volume); };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const bool some = s.volume > 1e-9 * std::pow(case_.spacing, case_.dimensions);
+  const auto mean = [&](double sum) { return some ? sum / s.volume : nan; };
+  Vec<3> center = Vec<3>::filled(nan);
+  for (int k = 0; some && k < 3; ++k) center[k] = s.moment[k] / s.mass;
+  if (some) center = movedInside(now, case_.dimensions, center);
   std::string row = fmt::format("{},{},{}", time, s.volume, s.mass);
-  for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", over(s.moment[k], s.mass));
+  for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", center[k]);
   for (int k = 0; k < case_.dimensions; ++k) row += fmt::format(",{}", mean(s.flow[k]));
   row += fmt::format(",{},{}", mean(s.pressure), mean(s.viscosity));
   if (hasOwnViscosities_) row += fmt::format(",{}", mean(s.shearRate));
