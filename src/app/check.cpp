@@ -40,6 +40,7 @@ void printMemory(const Case& c, const AnyParticles& particles, std::vector<std::
     print("# memory: more than {} needed, {} available\n", bytesText(leastMemory(c)),
           bytesText(availableMemory()));
   const MemoryCounts counts = countsFor(c, particles);
+  warnLargeDomain(c, counts, warnings);
   const MemoryEstimate onCpu = estimatedMemory(c, counts, false), onDevice = estimatedMemory(c, counts, true);
   print("# memory: about {} needed, {} available\n", bytesText(onCpu.host + onCpu.first),
         bytesText(availableMemory()));

@@ -101,6 +101,15 @@ MemoryEstimate estimatedMemory(const Case& c, const MemoryCounts& all, bool onDe
   return estimate;
 }
 
+void warnLargeDomain(const Case& c, const MemoryCounts& all, std::vector<std::string>& warnings) {
+  constexpr std::uint64_t large = std::uint64_t{1} << 30, share = 10;
+  const std::uint64_t cells = cellBytes * all.cells, rest = estimatedMemory(c, all, false).host - cells;
+  if (cells <= large || cells <= share * rest) return;
+  warnings.push_back(fmt::format(
+      "the domain takes {} for its {} search cells, and the {} particles take {}; a smaller domain would do",
+      bytesText(cells), all.cells, all.particles.fluid + all.particles.wall, bytesText(rest)));
+}
+
 void requireMemory(const Case& c, const AnyParticles& particles, const DeviceInfo* device) {
   requireMemory(c, countsFor(c, particles), device);
 }

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace treacle {
 
@@ -35,6 +36,9 @@ struct MemoryEstimate {
 };
 /// `all`: of the whole case. `onDevice`: the run computes on GPUs.
 MemoryEstimate estimatedMemory(const Case& c, const MemoryCounts& all, bool onDevice, std::uint64_t processes = 1);
+
+/// Search cells of an empty domain may take much more than all particles.
+void warnLargeDomain(const Case& c, const MemoryCounts& all, std::vector<std::string>& warnings);
 
 /// `device`: what the run computes on, null for the CPU. Errors: RunError where the case clearly needs more memory
 /// than the host, or the device, has free: on a device by more than the estimate may be off.

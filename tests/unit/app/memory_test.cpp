@@ -38,6 +38,20 @@ TEST(HostMemory, HoldsNoSolverWhereTheRunIsOnADevice) {
   EXPECT_GT(estimatedMemory(assembled, scene.counts, false).host, onCpu.host);
 }
 
+TEST(HostMemory, ALargeDomainIsToldOf) {
+  const test::MemoryScene scene = smallScene();
+  MemoryCounts counts = scene.counts;
+  std::vector<std::string> warnings;
+  warnLargeDomain(scene.c, counts, warnings);
+  counts.cells = 20'000'000;
+  warnLargeDomain(scene.c, counts, warnings);
+  EXPECT_TRUE(warnings.empty());
+  counts.cells = 200'000'000;
+  warnLargeDomain(scene.c, counts, warnings);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], HasSubstr("the domain takes 4.84 GiB for its 200000000 search cells"));
+}
+
 TEST(DeviceMemory, ARunThatDoesNotFitIsRefused) {
   const test::MemoryScene scene = smallScene();
   DeviceInfo device;
