@@ -142,8 +142,9 @@ std::string Watch::describeDensity(double value, double dt) const {
           : "",
       case_.method.kind == MethodKind::Isph
           ? ""
-          : "raise bulk_viscosity where it is small, dynamic_viscosity where a light "
-            "fluid carries a heavy one, and ",
+          : "raise bulk_modulus, because errors of the density vanish over bulk_viscosity / bulk_modulus, "
+            "bulk_viscosity where it is below 1000 dynamic_viscosity, dynamic_viscosity where a light fluid "
+            "carries a heavy one, and ",
       remedy(dt));
 }
 

@@ -131,7 +131,7 @@ body = [
   EXPECT_EQ(outcome.exitCode, 3);
   EXPECT_THAT(outcome.err, HasSubstr("walls that move or fluid that comes in press it together. Where there is no "
                                      "room for it, stop them sooner or "
-                                     "let it out; elsewhere raise bulk_viscosity"));
+                                     "let it out; elsewhere raise bulk_modulus"));
 }
 
 /// The light one is as stiff as the heavy one, but has next to no inertia and viscosity to keep its particles in
