@@ -135,9 +135,34 @@ Vec<D> Oracle<D>::acting(std::uint32_t i, std::uint32_t j, const Vec<D>& v) cons
   if (i >= fluid || j < fluid || s.particles.wallSurface.empty() || material(i).slipLength == 0) return v;
   const Face seen = face(i, j);
   if (seen.depth == 0) return v;
+  if (!sides.empty()) return v - sides[i].along(v);
   double across = 0;
   for (int k = 0; k < D; ++k) across += seen.normal[k] * v[k];
   return across * seen.normal;
+}
+
+template <int D>
+void Oracle<D>::findSlipSides() {
+  const std::uint32_t fluid = s.particles.fluidCount;
+  for (std::uint32_t i = 0; i < fluid; ++i) {
+    SymmetricBlock<D> normals{}, others{};
+    const auto forEachWall = [&](auto&& f) {
+      for (std::uint32_t j = fluid; j < count(); ++j)
+        if (const double r = norm(difference(i, j)); r < hp) f(j, r);
+    };
+    forEachWall([&](std::uint32_t j, double r) {
+      if (const Face seen = face(i, j); seen.depth > 0) normals.addOuter(-dw(r, hp), seen.normal);
+    });
+    const Vec<D> mean = mainAxis(normals);
+    forEachWall([&](std::uint32_t j, double) {
+      if (const Face seen = face(i, j); seen.depth > 0) others.addOuter(1, otherNormal(seen.normal, mean));
+      const auto& faces = s.particles.wallSurface[j - fluid].face;
+      const Vec<D> a = converted<double>(faces[0]), b = converted<double>(faces[1]);
+      if (norm(a) == 0 || norm(b) == 0 || norm(a) > 1.25 * l || norm(b) > 1.25 * l) return;
+      for (const Vec<D>& way : {a, b}) others.addOuter(1, otherNormal((1 / norm(way)) * way, mean));
+    });
+    sides.push_back(slipSideOf(mean, others));
+  }
 }
 
 template <int D>

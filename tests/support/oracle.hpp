@@ -20,6 +20,7 @@ struct Oracle {
   double l, hp, hn, hv, dt;
   double slopeScale = 1;               // with the renormalised gradient: what makes the moment of a full lattice I
   mutable std::vector<double> scales;  // viscosityScale of all, since pairs ask for it again and again
+  std::vector<SlipSide<D>> sides;      // slipSides() as a step has them; empty: each pair by its face
 
   explicit Oracle(const Scene<D>& scene)
       : s(scene),
@@ -30,6 +31,9 @@ struct Oracle {
         dt(s.c.time.step) {
     if (s.c.isAccurate()) slopeScale = 1 / latticeMoment();
   }
+
+  /// From now on fluid particles see the walls along which they slip as in a step.
+  void findSlipSides();
 
   std::uint32_t count() const { return s.particles.count; }
   const Material& material(std::uint32_t i) const { return s.c.materials[s.particles.material[i]]; }

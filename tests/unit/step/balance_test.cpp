@@ -150,11 +150,12 @@ TEST(Balance, ForcesOnWallsAreTheMomentumThatTheFluidLoses) {
 template <int D>
 struct PlainBalance {
   const Scene<D>& s;
-  const Oracle<D> oracle{s};
+  Oracle<D> oracle{s};
   std::vector<Vec<D>> u;        // as the scene's particles
   std::vector<double> resists;  // f: the share of its lambda that a fluid particle has (Cover::resists)
 
   PlainBalance(const Scene<D>& scene, const Particles<D>& after) : s(scene), u(after.count) {
+    if (s.c.isAccurate()) oracle.findSlipSides();
     for (std::uint32_t i = 0; i < after.count; ++i)
       for (int k = 0; k < D; ++k) u[after.id[i]][k] = after.velocity[i][k];
     for (std::uint32_t i = 0; i < s.particles.fluidCount; ++i)
