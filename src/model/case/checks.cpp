@@ -2,10 +2,10 @@
 
 #include "body_thickness.hpp"
 #include "carried_fluids.hpp"
+#include "likely_mistakes.hpp"
 #include "long_steps.hpp"
 #include "particles/body_points.hpp"
 #include "particles/fluid_extent.hpp"
-#include "slips.hpp"
 #include "treacle/model/case/bulk_constants.hpp"
 #include "treacle/model/case/flow_scales.hpp"
 #include "treacle/model/case/names.hpp"
@@ -364,7 +364,7 @@ std::vector<std::string> caseWarnings(const Case& c) {
   warnFriction(c, warnings);
   warnSprings(c, warnings);
   warnShortRadii(c, warnings);
-  warnSlips(c, warnings);
+  warnLikelyMistakes(c, warnings);
   if (!c.time.stepsVary()) warnTimes(c, warnings);
   return warnings;
 }

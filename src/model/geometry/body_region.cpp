@@ -1,5 +1,7 @@
 #include "body_region.hpp"
 
+#include "all_around.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,14 +47,7 @@ bool BodyRegion<D>::holds(const Vec<D>& x) const {
 
 template <int D>
 bool BodyRegion<D>::fillsAround(const Vec<D>& x, double distance) const {
-  if (!fills(x)) return false;
-  for (int k = 0; k < D; ++k)
-    for (const double way : {-distance, distance}) {
-      Vec<D> beside = x;
-      beside[k] += way;
-      if (!fills(beside)) return false;
-    }
-  return true;
+  return allAround(x, distance, [this](const Vec<D>& at) { return fills(at); });
 }
 
 template <int D>

@@ -1,5 +1,6 @@
 #include "nozzle_region.hpp"
 
+#include "geometry/all_around.hpp"
 #include "geometry/polygon.hpp"
 #include "geometry/wall_turn.hpp"
 #include "motion/nozzle_lattice.hpp"
@@ -48,14 +49,7 @@ bool NozzleRegion<D>::holds(const Vec<D>& x) const {
 
 template <int D>
 bool NozzleRegion<D>::fillsAround(const Vec<D>& x, double distance) const {
-  if (!holds(x)) return false;
-  for (int k = 0; k < D; ++k)
-    for (const double way : {-distance, distance}) {
-      Vec<D> beside = x;
-      beside[k] += way;
-      if (!holds(beside)) return false;
-    }
-  return true;
+  return allAround(x, distance, [this](const Vec<D>& at) { return holds(at); });
 }
 
 template class NozzleRegion<2>;

@@ -169,16 +169,21 @@ MemoryCounts count(const Case& c, const Particles<D>& some, const Communicator* 
       forEachAdjacentCell(cells, cells.cellAt(cell),
                           [&](const Vec<D, int>& at) { besideFluid[cells.linear(at)] = 1; });
   MemoryCounts n{.particles = some.numbers(), .cells = filled.size()};
-  std::vector<std::uint32_t> bodies(filled.size());
-  addBodies<D>(cells, some.position.span().subspan(some.wallBegin()), some.body.span().subspan(some.wallBegin()),
-               rigidBodies(some.rigid), bodies);
+  BodySet rigid;  // the particles do not know before the run
+  for (std::size_t b = 0; b < c.bodies.size(); ++b)
+    if (c.bodies[b].kind == BodyKind::Rigid) rigid.add(b);
+  std::vector<std::uint32_t> bodies(rigid.isEmpty() ? 0 : filled.size());
+  if (!rigid.isEmpty())
+    addBodies<D>(cells, some.position.span().subspan(some.wallBegin()), some.body.span().subspan(some.wallBegin()),
+                 rigid, bodies);
   n.filledCells = static_cast<std::uint64_t>(std::ranges::count(filled, 1));
   n.nodes = static_cast<std::uint64_t>(std::ranges::count(besideFluid, 1));
   for (std::uint32_t i = some.fluidCount; i < some.count; ++i) {
     n.nearWalls += !near.isFar(some, i);
     if (!isFinitePosition(some.position[i])) continue;
     const Vec<D, int> cell = cells.cellOf(some.position[i]);
-    n.activeWalls += besideFluid[cells.linear(cell)] || mayTouchAround(cells, bodies.data(), cell);
+    n.activeWalls +=
+        besideFluid[cells.linear(cell)] || (!bodies.empty() && mayTouchAround(cells, bodies.data(), cell));
   }
   if (!processes) return n;
   std::array all{n.particles.fluid, n.particles.wall, n.particles.surfaces, n.nearWalls, n.activeWalls};

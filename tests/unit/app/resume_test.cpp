@@ -261,9 +261,8 @@ TEST(resume, findsBodiesWithLongNames) {
       shop.call("run case.toml --threads 1 -o rest --end-time 4e-3 --resume case-run/checkpoint.h5").exitCode, 0);
 }
 
-TEST(resume, takesOtherMassesOfRigidBodies) {
-  Workshop shop;
-  shop.put("case.toml", smallCase + R"(
+/// A rigid body beside the fluid.
+const std::string stoneCase = smallCase + R"(
 [[body]]
 name = "stone"
 type = "rigid"
@@ -271,7 +270,11 @@ material = "syrup"
 shape = "box"
 min = [8e-3, 4e-3]
 max = [10e-3, 6e-3]
-)");
+)";
+
+TEST(resume, takesOtherMassesOfRigidBodies) {
+  Workshop shop;
+  shop.put("case.toml", stoneCase);
   const auto height = [&](const std::string& arguments) {
     const Outcome outcome = shop.call("run case.toml --threads 1 --force " + arguments);
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
@@ -291,15 +294,7 @@ max = [10e-3, 6e-3]
 /// Whatever its speed was.
 TEST(resume, holdsBodiesUntilALaterRelease) {
   Workshop shop;
-  shop.put("case.toml", smallCase + R"(
-[[body]]
-name = "stone"
-type = "rigid"
-material = "syrup"
-shape = "box"
-min = [8e-3, 4e-3]
-max = [10e-3, 6e-3]
-)");
+  shop.put("case.toml", stoneCase);
   ASSERT_EQ(shop.call("run case.toml --threads 1 --end-time 4e-3 -o part").exitCode, 0);
   const RigidBody falling = readCheckpoint<2>(shop / "part/checkpoint.h5").particles.rigid.bodies[2];
   EXPECT_LT(falling.velocity[1], -0.01);

@@ -8,6 +8,6 @@
 namespace treacle {
 
 /// What a case is not likely to mean: units other than SI, and places, times and names at which nothing is.
-void warnSlips(const Case& c, std::vector<std::string>& warnings);
+void warnLikelyMistakes(const Case& c, std::vector<std::string>& warnings);
 
 }  // namespace treacle

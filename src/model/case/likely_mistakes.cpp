@@ -1,4 +1,4 @@
-#include "slips.hpp"
+#include "likely_mistakes.hpp"
 
 #include "geometry/body_region.hpp"
 #include "treacle/model/geometry/shape.hpp"
@@ -133,7 +133,7 @@ void warnSmallBodies(const Case& c, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-void warnSlips(const Case& c, std::vector<std::string>& warnings) {
+void warnLikelyMistakes(const Case& c, std::vector<std::string>& warnings) {
   warnUnits(c, warnings);
   warnPlaces(c, warnings);
   warnLateTimes(c, warnings);

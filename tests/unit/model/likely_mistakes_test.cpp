@@ -30,7 +30,7 @@ Probe region(const char* name) {
   return p;
 }
 
-TEST(slips, noneInASoundCase) {
+TEST(likelyMistakes, noneInASoundCase) {
   Case c = pool();
   c.gas.emplace().vents = {{"top", {0, 0.03, 0}, {0.01, 0.05, 0}}};
   c.heat.emplace();
@@ -41,7 +41,7 @@ TEST(slips, noneInASoundCase) {
   EXPECT_THAT(caseWarnings(c), IsEmpty());
 }
 
-TEST(slips, unitsAreSi) {
+TEST(likelyMistakes, unitsAreSi) {
   Case c = pool();
   c.heat.emplace().ambient = 20;
   c.bodies[0].temperature = c.bodies[1].temperature = 300;
@@ -56,7 +56,7 @@ TEST(slips, unitsAreSi) {
   EXPECT_THAT(caseWarnings(c), testing::Contains(HasSubstr("gravity.acceleration is 981 m/s2, 100 times")));
 }
 
-TEST(slips, placesAreInTheDomain) {
+TEST(likelyMistakes, placesAreInTheDomain) {
   Case c = pool();
   c.outflows.push_back({.name = "box", .min = {0, 0.05, 0}, .max = {0.01, 0.06, 0}});
   c.outflows.push_back(
@@ -72,7 +72,7 @@ TEST(slips, placesAreInTheDomain) {
                           HasSubstr("vent 'in' is without effect: walls fill all of it")));
 }
 
-TEST(slips, timesAreInTheRun) {
+TEST(likelyMistakes, timesAreInTheRun) {
   Case c = pool();
   c.probes = {region("late")};
   c.probes[0].interval = 1;
@@ -85,7 +85,7 @@ TEST(slips, timesAreInTheRun) {
                                                "s is not before the end of the run, 0.2 s")}));
 }
 
-TEST(slips, whatIsNotThere) {
+TEST(likelyMistakes, whatIsNotThere) {
   Case c = pool();
   c.materials.push_back({"steel", 7800, 10, 1e4, 1e6});
   c.probes = {region("steel")};
