@@ -9,16 +9,17 @@ namespace treacle {
 // The sums of mph_sums.hpp along walls at which fluid slips (MphPairs::alongWall), for the sources of both
 // backends, which instantiate them.
 
-/// Sum of n n^T per fluid particle over the normals of the faces of its walls, each by how much its wall particle
-/// pushes, of which the mean normal is the main axis.
-template <int D, class Mph>
-struct NormalsOfWalls {
+/// A sum of symmetric matrices over the walls of each fluid particle, of terms with
+///   weight(distance)              [any]
+///   of(pairs, i, j, d)            the matrix of fluid particle i and wall particle j, d = x_j - x_i [m]
+///   store(pairs, i, sum)
+template <int D, class Terms>
+struct MatrixOfWalls {
   static constexpr int values = SymmetricBlock<D>::size;
   static constexpr bool uses(ListSegment s) { return s == ListSegment::NearWall; }
   using StoresAll = void;
 
-  Mph mph;
-  SlipSide<D>* side;
+  Terms terms;
 
   template <class At>
   TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
@@ -27,104 +28,93 @@ struct NormalsOfWalls {
   template <class T, class O>
   TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O& own,
                       const OneParticle& other, ListSegment) const {
-    const T push = mph.gradientShape(r) * r.square * r.inverse;
-    int n = 0;
-    for (int k = 0; k < D; ++k)
-      for (int m = k; m < D; ++m, ++n)
-        sum[n] += push * ofEachPair(own, d, [&](std::uint32_t, const Vec<D>& toWall) {
-                    const SeenFace<D> face = seenFace(pairs.wallSurface[other.index - pairs.fluidCount], toWall);
-                    return face.exists() ? face.way[k] * face.way[m] / (face.below * face.below) : 0.0;
-                  });
+    const T weight = terms.weight(r);
+    for (int n = 0; n < values; ++n)
+      sum[n] += weight * ofEachPair(own, d, [&](std::uint32_t i, const Vec<D>& toWall) {
+                  return terms.of(pairs, i, other.index, toWall).a[n];
+                });
   }
-  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, const double* sum) const {
-    SymmetricBlock<D> normals;
-    for (int n = 0; n < normals.size; ++n) normals.a[n] = sum[n];
-    side[i].axis = mainAxis(normals);
+  TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
+    SymmetricBlock<D> matrix;
+    for (int n = 0; n < values; ++n) matrix.a[n] = sum[n];
+    terms.store(pairs, i, matrix);
   }
 };
 
-/// Sum of otherNormal() times itself over the faces of the walls within h_p, and both faces of a wall particle at
-/// an edge: the face behind the edge is not between the fluid particle and any other wall particle.
-template <int D>
-struct OtherNormalsOfWalls {
-  static constexpr int values = SymmetricBlock<D>::size;
-  static constexpr bool uses(ListSegment s) { return s == ListSegment::NearWall; }
-  using StoresAll = void;
-
-  double radius;  // h_p [m]
+/// n n^T of the face's normal, by how much the wall particle pushes: the mean normal is the main axis of the sum.
+template <int D, class Mph>
+struct NormalsOfWalls {
+  Mph mph;
   SlipSide<D>* side;
 
-  template <class At>
-  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
-    return at;
+  template <class T>
+  TREACLE_HD T weight(const PairDistance<T>& r) const {
+    return mph.gradientShape(r) * r.square * r.inverse;
   }
-  template <class T, class O>
-  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>&, const O& own,
-                      const OneParticle& other, ListSegment) const {
-    const WallSurface<D>& surface = pairs.wallSurface[other.index - pairs.fluidCount];
-    int n = 0;
-    for (int k = 0; k < D; ++k)
-      for (int m = k; m < D; ++m, ++n)
-        sum[n] += ofEachPair(own, d, [&](std::uint32_t i, const Vec<D>& toWall) {
-          if (norm2(toWall) > radius * radius) return 0.0;
-          const SymmetricBlock<D> others = othersOf(surface, toWall, side[i].axis, pairs.spacing);
-          return others(k, m);
-        });
+  TREACLE_HD SymmetricBlock<D> of(const MphPairs<D>& pairs, std::uint32_t, std::uint32_t j,
+                                  const Vec<D>& toWall) const {
+    SymmetricBlock<D> m{};
+    const SeenFace<D> face = seenFace(pairs.wallSurface[j - pairs.fluidCount], toWall);
+    if (face.exists()) m.addOuter(1 / (face.below * face.below), face.way);
+    return m;
   }
-  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, const double* sum) const {
-    SymmetricBlock<D> others;
-    for (int n = 0; n < others.size; ++n) others.a[n] = sum[n];
-    side[i] = slipSideOf(side[i].axis, others);
+  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, const SymmetricBlock<D>& sum) const {
+    side[i].axis = mainAxis(sum);
   }
+};
 
- private:
-  TREACLE_HD static SymmetricBlock<D> othersOf(const WallSurface<D>& surface, const Vec<D>& toWall,
-                                               const Vec<D>& mean, double spacing) {
-    constexpr double atEdge = 1.25;  // farthest of both faces from the wall particle [l]
+/// otherNormal() times itself of the faces of walls within h_p, and of both faces of a wall particle at an edge:
+/// the face behind the edge is not between the fluid particle and any other wall particle.
+template <int D>
+struct OtherNormalsOfWalls {
+  static constexpr double atEdge = 1.25;  // farthest of both faces from the wall particle [l]
+
+  SlipSide<D>* side;
+
+  template <class T>
+  TREACLE_HD T weight(const PairDistance<T>&) const {
+    return T(1.0);
+  }
+  TREACLE_HD SymmetricBlock<D> of(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+                                  const Vec<D>& toWall) const {
     SymmetricBlock<D> others{};
+    const double h = pairs.terms.pressureRadius, most = atEdge * pairs.spacing;
+    if (norm2(toWall) > h * h) return others;
+    const WallSurface<D>& surface = pairs.wallSurface[j - pairs.fluidCount];
     const auto add = [&](const Vec<D>& way, double length) {
-      others.addOuter(1, otherNormal((1 / length) * way, mean));
+      others.addOuter(1, otherNormal((1 / length) * way, side[i].axis));
     };
     if (const SeenFace<D> face = seenFace(surface, toWall); face.exists()) add(face.way, face.below);
     const Vec<D> a = converted<double>(surface.face[0]), b = converted<double>(surface.face[1]);
     const double first = norm(a), second = norm(b);
-    if (first > 0 && second > 0 && first < atEdge * spacing && second < atEdge * spacing)
-      add(a, first), add(b, second);
+    if (first > 0 && second > 0 && first < most && second < most) add(a, first), add(b, second);
     return others;
+  }
+  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, const SymmetricBlock<D>& sum) const {
+    side[i] = slipSideOf(side[i].axis, sum);
   }
 };
 
-/// B from moments of all neighbours: that of the moment sum g d' d'^T, d' being the part of d that acts, with the
-/// factor of the whole moment. What is left out along walls is no lack of neighbours.
+/// g (d d^T - d' d'^T), d' being the part of d that acts. B is that of the moment of d', with the factor of the
+/// whole moment: what is left out along walls is no lack of neighbours.
 template <int D, class Mph>
 struct SlipRenormalisation {
-  static constexpr int values = SymmetricBlock<D>::size;
-  static constexpr bool uses(ListSegment s) { return s == ListSegment::NearWall; }
-  using StoresAll = void;
-
   Mph mph;
   SymmetricBlock<D>* b;  // the moments before
 
-  template <class At>
-  TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
-    return at;
+  template <class T>
+  TREACLE_HD T weight(const PairDistance<T>& r) const {
+    return mph.gradientShape(r);
   }
-  template <class T, class O>
-  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O& own,
-                      const OneParticle& other, ListSegment) const {
-    const T g = mph.gradientShape(r);
-    int n = 0;
-    for (int k = 0; k < D; ++k)
-      for (int m = k; m < D; ++m, ++n)
-        sum[n] += g * ofEachPair(own, d, [&](std::uint32_t i, const Vec<D>& toWall) {
-                    const Vec<D> acting = toWall - pairs.alongWall(i, other.index, toWall, toWall);
-                    return toWall[k] * toWall[m] - acting[k] * acting[m];
-                  });
+  TREACLE_HD SymmetricBlock<D> of(const MphPairs<D>& pairs, std::uint32_t i, std::uint32_t j,
+                                  const Vec<D>& toWall) const {
+    SymmetricBlock<D> m{};
+    m.addOuter(1, toWall);
+    m.addOuter(-1, toWall - pairs.alongWall(i, j, toWall, toWall));
+    return m;
   }
-  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, const double* sum) const {
-    const SymmetricBlock<D> whole = b[i];
-    SymmetricBlock<D> acting = whole;
-    for (int n = 0; n < values; ++n) acting.a[n] -= mph.gradientFactor * sum[n];
+  TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, const SymmetricBlock<D>& sum) const {
+    const SymmetricBlock<D> whole = b[i], acting = whole + (-mph.gradientFactor) * sum;
     const double factor = trace(renormalisationOf(whole)) / trace(flooredInverse(whole, leastMoment, false));
     b[i] = factor * flooredInverse(acting, fmax(leastMoment, leastSlipMoment * factor), false);
   }
@@ -194,17 +184,22 @@ struct DivergenceAlongWalls {
   }
 };
 
+template <int D, class Backend, class Terms>
+void sumOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const Terms& terms) {
+  sumOnFluid(context, pairs, MatrixOfWalls<D, Terms>{terms});
+}
+
 template <int D, class Backend>
 void slipSides(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SlipSide<D>> side) {
   const auto mph = pairs.terms.with(AccurateScheme{});
-  sumOnFluid(context, pairs, NormalsOfWalls<D, std::decay_t<decltype(mph)>>{mph, side.data()});
-  sumOnFluid(context, pairs, OtherNormalsOfWalls<D>{pairs.terms.pressureRadius, side.data()});
+  sumOnWalls(context, pairs, NormalsOfWalls<D, std::decay_t<decltype(mph)>>{mph, side.data()});
+  sumOnWalls(context, pairs, OtherNormalsOfWalls<D>{side.data()});
 }
 
 template <int D, class Backend>
 void renormaliseAlongWalls(Context<Backend>& context, const MphPairs<D>& pairs, std::span<SymmetricBlock<D>> b) {
   const auto mph = pairs.terms.with(AccurateScheme{});
-  sumOnFluid(context, pairs, SlipRenormalisation<D, std::decay_t<decltype(mph)>>{mph, b.data()});
+  sumOnWalls(context, pairs, SlipRenormalisation<D, std::decay_t<decltype(mph)>>{mph, b.data()});
 }
 
 template <int D, class Backend>
