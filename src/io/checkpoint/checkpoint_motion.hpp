@@ -102,19 +102,22 @@ inline void writeBulk(hid_t file, const BulkMemory& bulk) {
   if (bulk == BulkMemory{}) return;
   writeAttribute(file, "bulk_viscosity_raised", bulk.viscosity);
   writeAttribute(file, "bulk_modulus_raised", bulk.modulus);
+  writeAttribute(file, "bulk_modulus_turning", bulk.turning);
   writeAttribute(file, "bulk_excess", bulk.excess);
   writeAttribute(file, "bulk_rest", bulk.rest);
 }
 /// Errors: Hdf5Error for what no run remembers.
 inline BulkMemory readBulk(hid_t file) {
   if (!hasAttribute(file, "bulk_rest")) return {};
-  const BulkMemory bulk{readAttribute<double>(file, "bulk_viscosity_raised"),
-                        readAttribute<double>(file, "bulk_modulus_raised"),
-                        readAttribute<double>(file, "bulk_excess"), readAttribute<double>(file, "bulk_rest")};
-  const bool isFinite = std::isfinite(bulk.viscosity + bulk.modulus + bulk.excess + bulk.rest);
-  if (!isFinite || bulk.viscosity < 1 || bulk.modulus < 1 || bulk.excess < 0 || bulk.rest < 0)
-    throw Hdf5Error(
-        fmt::format("bulk constants raised by {} and {}, for {} s", bulk.viscosity, bulk.modulus, bulk.rest));
+  const BulkMemory bulk{
+      readAttribute<double>(file, "bulk_viscosity_raised"), readAttribute<double>(file, "bulk_modulus_raised"),
+      hasAttribute(file, "bulk_modulus_turning") ? readAttribute<double>(file, "bulk_modulus_turning") : 1,
+      readAttribute<double>(file, "bulk_excess"), readAttribute<double>(file, "bulk_rest")};
+  const bool isFinite = std::isfinite(bulk.viscosity + bulk.modulusOfAll() + bulk.excess + bulk.rest);
+  const bool isRaised = bulk.viscosity >= 1 && bulk.modulus >= 1 && bulk.turning >= 1;
+  if (!isFinite || !isRaised || bulk.excess < 0 || bulk.rest < 0)
+    throw Hdf5Error(fmt::format("bulk constants raised by {}, {} and {}, for {} s", bulk.viscosity, bulk.modulus,
+                                bulk.turning, bulk.rest));
   return bulk;
 }
 

@@ -19,6 +19,7 @@ constexpr double shareOfStable = 0.5;  // of the longest step
 // Of constants that follow the density. The excess counts if pressures make up this part of it; the viscosity is
 // over that at first.
 constexpr double mostExcess = 0.005, leastCompression = 0.5, mostViscosity = 16;
+constexpr double turns = 16;  // kappa / lambda of fluid that folds, over its rate of turning
 
 /// How far the highest fluid and the lowest place are apart to which it can fall [m].
 double tallestColumn(const Case& c) {
@@ -65,6 +66,28 @@ Expected expectedOf(const Case& c, const Material& m, double speed, const FlowSc
   return {mu, std::max(pressure / compressed, flow.nozzlePressure(mu) / compressedInNozzles), step, settling};
 }
 
+/// kappa / lambda of the materials whose constants follow the density, but for BulkMemory::turning [1/s].
+double openRate(const Case& c, const BulkMemory& memory) {
+  double rate = 0;
+  for (const Material& m : c.materials)
+    if (m.hasOpenBulk())
+      rate = std::max(rate, m.bulkModulus * memory.modulus / (m.bulkViscosity * memory.viscosity));
+  return rate;
+}
+
+/// `rate`: openRate(); `grown`: the excess from which on kappa grows; `room`: by which it may for the step;
+/// `wanted`: by which it is to grow at most.
+bool followTurning(double excess, double grown, double rate, double room, double wanted, BulkMemory& memory) {
+  const double next = std::exp2(std::floor(std::log2(std::max(1.0, std::min(room, wanted)))));
+  const bool grows = excess > grown && next > memory.turning;
+  const bool isSlow = 2 * wanted < memory.turning || room < memory.turning;
+  const bool isCalm = memory.rest == 0 && 2 * excess < mostExcess;
+  if (!grows && (memory.turning == 1 || !(isSlow || isCalm))) return false;
+  memory.turning = grows || isSlow ? next : memory.turning / 2;
+  memory.rest = 2 / (rate * memory.turning);
+  return true;
+}
+
 /// With three digits, as people write such numbers.
 double rounded(double x) { return std::stod(fmt::format("{:.3g}", x)); }
 
@@ -106,29 +129,33 @@ void setBulkConstants(Case& c) {
   }
 }
 
+double turningScale(const Case& c) {
+  double density = 0;
+  for (const Body& body : c.bodies)
+    if (body.holdsFluid())
+      density = std::max(density, c.materials[static_cast<std::size_t>(body.material)].density);
+  return flowScales(c).length * std::sqrt(density * std::pow(c.spacing, c.dimensions));
+}
+
 bool adaptBulkConstants(const Case& c, const FluidDensity& is, double dt, bool isFirst, BulkMemory& memory) {
   memory.rest = std::max(0.0, memory.rest - dt);
-  const double excess = is.excess;
-  if (isFirst) memory.excess = excess > mostExcess ? excess : 0;
-  const bool helped = memory.excess == 0 || (memory.modulus > 1 && excess < 0.9 * memory.excess);
-  if (excess <= (memory.rest == 0 && helped ? mostExcess : std::max(mostExcess, 1.2 * memory.excess)))
-    return false;
-  if (!(is.compression >= leastCompression * excess)) return false;
-  const double stable = shareOfStable * mostCompression(c) / c.time.step;
-  double rate = 0;  // kappa / lambda [1/s]
-  for (const Material& m : c.materials)
-    if (m.hasOpenBulk())
-      rate = std::max(rate, m.bulkModulus * memory.modulus / (m.bulkViscosity * memory.viscosity));
+  const double excess = is.excess, rate = openRate(c, memory);
   if (rate == 0) return false;
-  if (const double room = stable / rate; room >= 2) {
-    const double raise = std::min(4.0, room);
-    memory.modulus *= raise, rate *= raise;
+  if (isFirst) memory.excess = excess > mostExcess ? excess : 0;
+  const double stable = shareOfStable * mostCompression(c) / c.time.step, room = stable / rate;
+  const double grown = std::max(mostExcess, 1.2 * memory.excess);
+  if (followTurning(excess, grown, rate, room, turns * is.turning / rate, memory)) return true;
+  const bool helped = memory.excess == 0 || (memory.modulus > 1 && excess < 0.9 * memory.excess);
+  if (excess <= (memory.rest == 0 && helped ? mostExcess : grown)) return false;
+  if (!(is.compression >= leastCompression * excess)) return false;
+  if (room >= 2) {
+    memory.modulus *= std::min(4.0, room);
   } else if (memory.viscosity < mostViscosity) {
     memory.modulus *= 2, memory.viscosity *= 2;
   } else {
     return false;
   }
-  memory.excess = excess, memory.rest = 2 / rate;
+  memory.excess = excess, memory.rest = 2 / openRate(c, memory);
   return true;
 }
 

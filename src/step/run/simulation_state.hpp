@@ -43,11 +43,13 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   std::unique_ptr<StepMethod<D, Backend>> method;
   std::optional<DistantWalls<D>> distant;  // which `particles` has not
   double lastSpeed = 0;                    // of the fastest particle [m/s]
+  double turningScale = 0;                 // turningScale(theCase) [m kg^0.5]
   double mass = 0;                         // of the fluid at the start [kg; per metre of depth in 2D]
   std::optional<Watch> watch;
   std::optional<StepControl> control;  // of automatic steps
   double endOfStep = 0;                // time at the end of the step at hand [s]
   bool tooCoarse = false;              // an automatic step was, and it was said
+  bool foldsFast = false;              // the fluid did (BulkMemory::turning), and it was said
   PressedSteps pressedSteps;           // among equal ones
 
   State(const Case& c, Particles<D> state, std::int64_t startStep, double startTime, const Communicator* processes)
@@ -59,6 +61,7 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
     }
     this->fluidOfAll = static_cast<std::uint32_t>(sumOverProcesses(context, state.fluidCount));
     wallsMove = sumOverProcesses(context, someWallMoves(theCase, state)) > 0;
+    turningScale = treacle::turningScale(theCase);
     mass = sumOverProcesses(context, fluidMass(theCase, state));
     boundaries.begin(state);
     bodies.begin(state);
@@ -291,15 +294,27 @@ struct Simulation<D, Backend>::State : FlowState<D, Backend> {
   }
 
   void adaptBulk(StepReport& report) {
+    const Diagnostics& d = report.diagnostics;
+    if (!watch->tellsDensity(d)) return;
     BulkMemory& bulk = particles.bulk;
-    const FluidDensity is{report.diagnostics.meanDensityRatio - 1, report.diagnostics.compression};
-    if (!watch->tellsDensity(report.diagnostics) || !adaptBulkConstants(theCase, is, timeStep, step == 1, bulk))
-      return;
+    const BulkMemory before = bulk;
+    const double turning = turningScale > 0 ? std::sqrt(2 * d.kineticEnergy / this->fluidOfAll) / turningScale : 0;
+    const FluidDensity is{d.meanDensityRatio - 1, d.compression, turning};
+    if (!adaptBulkConstants(theCase, is, timeStep, step == 1, bulk)) return;
     particles.modes.pressure = {};
-    report.notes.push_back(fmt::format(
-        "the fluid is {:.2g} % too dense: its automatic bulk modulus is {:.3g} times, its bulk viscosity "
-        "{:g} times as large as at first from here on",
-        100 * is.excess, bulk.modulus, bulk.viscosity));
+    const bool folds = bulk.turning > before.turning;
+    if (bulk.turning < before.turning || (folds && std::exchange(foldsFast, true))) return;
+    const double percent = 100 * is.excess;
+    if (folds)
+      report.notes.push_back(
+          fmt::format("the fluid is {:.2g} % too dense: its automatic bulk modulus is {:.3g} "
+                      "times as large as at first while it flows as fast",
+                      percent, bulk.modulusOfAll()));
+    else
+      report.notes.push_back(
+          fmt::format("the fluid is {:.2g} % too dense: its automatic bulk modulus is {:.3g} times, its bulk "
+                      "viscosity {:g} times as large as at first from here on",
+                      percent, bulk.modulusOfAll(), bulk.viscosity));
   }
 
   GasReport gasReport() const {

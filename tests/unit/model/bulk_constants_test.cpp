@@ -79,7 +79,7 @@ TEST(BulkConstants, LeaveParticlesTimeToSettle) {
 }
 
 /// Fluid whose excess of density is the pressure's.
-FluidDensity pressed(double excess) { return {excess, excess}; }
+FluidDensity pressed(double excess) { return {excess, excess, 0}; }
 
 TEST(BulkConstants, FollowTheDensityInTheRun) {
   Case c = blockOf(10);
@@ -120,9 +120,37 @@ TEST(BulkConstants, DoNotFollowWhatNoPressureMakes) {
   Case c = blockOf(10);
   setBulkConstants(c);
   BulkMemory memory;
-  EXPECT_FALSE(adaptBulkConstants(c, {0.02, 0.008}, 1e-3, false, memory));
+  EXPECT_FALSE(adaptBulkConstants(c, {0.02, 0.008, 0}, 1e-3, false, memory));
   EXPECT_EQ(memory, BulkMemory{});
-  EXPECT_TRUE(adaptBulkConstants(c, {0.02, 0.012}, 1e-3, false, memory));
+  EXPECT_TRUE(adaptBulkConstants(c, {0.02, 0.012, 0}, 1e-3, false, memory));
+}
+
+TEST(BulkConstants, FollowFluidThatFolds) {
+  Case c = blockOf(10);
+  setBulkConstants(c);
+  const double rate = c.materials[0].bulkModulus / c.materials[0].bulkViscosity;  // 15 1/s
+  BulkMemory memory;
+  EXPECT_FALSE(adaptBulkConstants(c, {0.004, 0, rate}, 1e-3, false, memory)) << "it is not too dense";
+  EXPECT_FALSE(adaptBulkConstants(c, {0.02, 0, 0.12 * rate}, 1e-3, false, memory)) << "kappa is large enough";
+  EXPECT_TRUE(adaptBulkConstants(c, {0.02, 0, 0.3 * rate}, 1e-3, false, memory));
+  EXPECT_EQ(memory.turning, 4);
+  EXPECT_EQ(memory.modulus, 1);
+  EXPECT_TRUE(adaptBulkConstants(c, {0.02, 0, rate}, 1e-3, false, memory));
+  EXPECT_EQ(memory.turning, 16) << "as far as the step lets it, 16.7";
+  EXPECT_NEAR(memory.rest, 2 / (16 * rate), 1e-12);
+  EXPECT_FALSE(adaptBulkConstants(c, {0.02, 0, 10 * rate}, 1e-3, false, memory));
+  MaterialTable table = MaterialTable::make(c);
+  table.raiseBulk(c, memory);
+  EXPECT_DOUBLE_EQ(table.bulkModulus[0], 16 * c.materials[0].bulkModulus);
+  EXPECT_DOUBLE_EQ(table.bulkViscosity[0], c.materials[0].bulkViscosity);
+  EXPECT_FALSE(adaptBulkConstants(c, {0.004, 0, 0.6 * rate}, 1, false, memory)) << "it wavers";
+  EXPECT_TRUE(adaptBulkConstants(c, {0.004, 0, 0.4 * rate}, 1, false, memory)) << "it flows more slowly";
+  EXPECT_EQ(memory.turning, 4);
+  EXPECT_FALSE(adaptBulkConstants(c, {0, 0, rate}, 1e-3, false, memory)) << "it has had no time to act";
+  EXPECT_TRUE(adaptBulkConstants(c, {0, 0, rate}, 1, false, memory)) << "the excess is gone";
+  EXPECT_EQ(memory.turning, 2);
+  EXPECT_TRUE(adaptBulkConstants(c, {0.004, 0, 0}, 1, false, memory)) << "the fluid is at rest";
+  EXPECT_EQ(memory.turning, 1);
 }
 
 TEST(BulkConstants, KeepWhatTheCaseSays) {

@@ -30,7 +30,7 @@ struct MaterialTable {
       const Material& material = c.materials[static_cast<std::size_t>(m)];
       if (!material.hasOpenBulk()) continue;
       bulkViscosity[m] = raised.viscosity * material.bulkViscosity;
-      bulkModulus[m] = raised.modulus * material.bulkModulus;
+      bulkModulus[m] = raised.modulusOfAll() * material.bulkModulus;
     }
   }
 };
