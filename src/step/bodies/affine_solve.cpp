@@ -49,6 +49,16 @@ double largest(const Vector& v, const Vector& scale) {
   return most;
 }
 
+/// Whether some unknown changes nothing.
+bool hasIdle(const Vector& derivative, std::size_t n) {
+  for (std::size_t j = 0; j < n; ++j) {
+    bool acts = false;
+    for (std::size_t i = 0; i < n; ++i) acts = acts || derivative[i * n + j] != 0;
+    if (!acts) return true;
+  }
+  return false;
+}
+
 double product(const Vector& a, const Vector& b) {
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
@@ -174,7 +184,10 @@ AffineSolve::Result AffineSolve::run(const Function& f, Vector& x, Vector& deriv
     for (std::size_t i = 0; i < n; ++i) step[i] -= x[i];
     result.converged = largest(step, scale) <= (k <= 2 * patience ? 1 : known) * tolerance;
     // What was computed last must be what the unknowns are.
-    if ((result.converged && isLast) || k == most) return result;
+    if ((result.converged && isLast) || k == most) {
+      if (hasIdle(derivative, n)) derivative.clear();
+      return result;
+    }
     if (k > 0 && k % patience == 0) {
       differentiate(nearby);
       continue;

@@ -37,8 +37,10 @@ class AffineSolve {
     bool converged = false;  // the next step would have been short enough
   };
 
-  /// `derivative`: n x n, row by row; empty: not known; takes what it is in the end. `scale`: of each unknown, by
-  /// which a derivative that is not known is found and the `tolerance` of a step is measured. `most`: steps.
+  /// `derivative`: n x n, row by row; empty: not known; takes what it is in the end, or nothing where an unknown
+  /// changes nothing: later it may. Such an unknown keeps its value, whatever the function is. `scale`: of each
+  /// unknown, by which a derivative that is not known is found and the `tolerance` of a step is measured. `most`:
+  /// steps.
   static Result run(const Function& f, std::vector<double>& x, std::vector<double>& derivative,
                     const std::vector<double>& scale, double tolerance, int most,
                     const std::vector<Restraint>& restraints = {});

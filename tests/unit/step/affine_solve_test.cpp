@@ -38,6 +38,20 @@ TEST(AffineSolve, FindsTheZeroOfAnAffineFunction) {
   }
 }
 
+/// It keeps its value, and the derivative is not kept: later it may act.
+TEST(AffineSolve, ForgetsADerivativeInWhichAnUnknownChangesNothing) {
+  std::vector<double> x{2, 2}, derivative;
+  const auto idle = [](const std::vector<double>& at) { return std::vector<double>{at[0] - 1, -3}; };
+  EXPECT_TRUE(AffineSolve::run(idle, x, derivative, {1, 1}, 1e-9, 20).converged);
+  EXPECT_NEAR(x[0], 1, 1e-9);
+  EXPECT_EQ(x[1], 2);
+  EXPECT_TRUE(derivative.empty());
+  const auto both = [](const std::vector<double>& at) { return std::vector<double>{at[0] - 1, at[1] - 3}; };
+  EXPECT_TRUE(AffineSolve::run(both, x, derivative, {1, 1}, 1e-9, 20).converged);
+  EXPECT_NEAR(x[1], 3, 1e-9);
+  EXPECT_EQ(derivative.size(), 4u);
+}
+
 /// From the derivative of quite another function: it would not become right in twelve steps.
 TEST(AffineSolve, FindsAnewADerivativeThatLeadsAstray) {
   constexpr std::size_t n = 12;

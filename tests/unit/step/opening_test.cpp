@@ -129,6 +129,17 @@ TEST(Openings, KeepTheirFlowRate) {
   }
 }
 
+/// Though the first step, which begins with an empty reserve, cannot find what the pressure does.
+TEST(Openings, KeepTheirFlowRateFromAnEmptyReserve) {
+  Case c = channelCase(2);
+  c.openings[0].pressure.reset();
+  c.openings[0].flowRate = TimeFunction{4e-4};
+  c.bodies[0].where = "x > 0";
+  Simulation<2> simulation(c, created<2>(c));
+  flowed(simulation, 100);
+  EXPECT_NEAR(meanSpeed(simulation) * 0.01 / 4e-4, 1, 0.06);
+}
+
 /// With a rigid block in the channel, whose velocity is found together with the pressure, and which goes with the
 /// fluid in the middle.
 TEST(Openings, KeepTheirFlowRateBesideARigidBody) {
