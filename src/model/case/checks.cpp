@@ -286,7 +286,6 @@ void warnKeysOfOthers(const Case& c, std::vector<std::string>& warnings) {
     };
     const bool fluid = isOf([](const Body& b) { return b.holdsFluid(); });
     const bool wall = isOf([](const Body& b) { return b.isWall(); });
-    const bool tension = std::ranges::any_of(c.materials, [](const Material& f) { return f.surfaceTension > 0; });
     const auto warn = [&](std::string_view key, std::string_view why) {
       warnings.push_back(fmt::format("material '{}' has {} without effect: {}", m.name, key, why));
     };
@@ -296,7 +295,7 @@ void warnKeysOfOthers(const Case& c, std::vector<std::string>& warnings) {
     const bool angle = m.contactAngle != Material{}.contactAngle;
     if (angle && !wall) warn("contact_angle", noWall);
     if (!m.contactAngles.empty() && !wall) warn("contact_angles", noWall);
-    if ((angle || !m.contactAngles.empty()) && wall && !tension)
+    if ((angle || !m.contactAngles.empty()) && wall && !c.hasSurfaceTension())
       warn(angle ? "contact_angle" : "contact_angles", "no fluid has a surface_tension");
   }
 }

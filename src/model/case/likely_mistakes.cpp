@@ -139,10 +139,17 @@ void warnLikelyMistakes(const Case& c, std::vector<std::string>& warnings) {
   warnLateTimes(c, warnings);
   warnMaterialsOfProbes(c, warnings);
   warnSmallBodies(c, warnings);
-  if (c.method.kind == MethodKind::MphI && c.method.scheme == SchemeKind::Published && c.method.tensionLimit > 0)
+  if (c.method.kind != MethodKind::MphI || c.method.scheme != SchemeKind::Published) return;
+  if (c.method.tensionLimit > 0)
     warnings.push_back(
         "method.tension_limit is without effect: the scheme \"published\" has no tension; expected the scheme "
         "\"accurate\" beside it");
+  for (const Material& m : c.materials)
+    if (m.slipLength > 0)
+      warnings.push_back(fmt::format(
+          "material '{}' has slip_length without effect: the scheme \"published\" has no slip; expected "
+          "the scheme \"accurate\" beside it",
+          m.name));
 }
 
 }  // namespace treacle

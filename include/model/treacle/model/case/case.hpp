@@ -181,8 +181,11 @@ struct Case {
   bool needsBalance() const { return output.balance || hasLoads(); }
   /// Whether what walls bear is summed in each step: for the balance or for rigid bodies. Of MPH-I.
   bool needsWallForces() const { return needsBalance() || hasRigid(); }
+  /// Whether some fluid has one; those of materials of walls do not count.
   bool hasSurfaceTension() const {
-    return std::ranges::any_of(materials, [](const Material& m) { return m.surfaceTension > 0; });
+    return std::ranges::any_of(bodies, [&](const Body& b) {
+      return b.holdsFluid() && materials[static_cast<std::size_t>(b.material)].surfaceTension > 0;
+    });
   }
   /// Whether walls look for fluid as far as any pair acts, and not as far as densities alone. Of MPH-I.
   bool needsWallNeighbours() const { return needsWallForces() || hasSurfaceTension(); }
