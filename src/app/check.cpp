@@ -108,6 +108,7 @@ double particlesFromNozzles(const Case& c) {
 double secondsPerParticle(const Case& c) {
   const bool plane = c.dimensions == 2;
   if (c.method.kind == MethodKind::Isph) return plane ? 3e-6 : 9e-6;
+  if (c.method.scheme == SchemeKind::Accurate && c.hasRigid()) return plane ? 2e-5 : 3e-4;
   if (c.method.scheme == SchemeKind::Accurate) return plane ? 9e-6 : 4e-5;
   return plane ? 6e-6 : 2e-5;
 }
