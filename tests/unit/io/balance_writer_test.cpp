@@ -19,6 +19,7 @@ Case caseOf(int dimensions, const std::vector<std::string>& walls) {
   Case c;
   c.dimensions = dimensions;
   c.method.scheme = SchemeKind::Published;
+  c.materials.resize(1);
   c.bodies.resize(1);
   c.bodies[0].name = "pool";
   for (const std::string& name : walls) {
@@ -66,7 +67,7 @@ TEST(BalanceWriter, ThePowersOfRepulsionAndShiftStandWhereTheSchemeHasThem) {
 TEST(BalanceWriter, SurfacesStandWhereSomeFluidHasATension) {
   TemporaryDirectory directory;
   Case c = caseOf(2, {});
-  c.materials.emplace_back().surfaceTension = 0.07;
+  c.materials[0].surfaceTension = 0.07;
   Balance balance{1, 2.5, 1e-3, -4, 1e-20, 0.1, {}};
   balance.surfacePower = -0.25, balance.surfaceEnergy = 8;
   BalanceWriter writer(directory / "balance.csv", c);

@@ -41,7 +41,7 @@ Particles<D> randomParticles(std::uint32_t fluid, std::uint32_t wall) {
   particles.modes.age = {7, 13};
   particles.modes.pressure = {3.75, 4, 6};
   particles.steps = {0.01, 0.02, 0.3};
-  particles.bulk = {2, 64, 0.007, 0.05};
+  particles.bulk = {2, 64, 4, 0.007, 0.05};
   std::mt19937_64 random(D);
   std::uniform_real_distribution<double> real(-1, 1);
   particles.forEachField([&]<class T>(Buffer<T>& field) {
