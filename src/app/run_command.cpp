@@ -13,7 +13,6 @@
 #include "treacle/core/error.hpp"
 #include "treacle/io/case/case_reader.hpp"
 #include "treacle/io/checkpoint/checkpoint.hpp"
-#include "treacle/io/shapes/shape_files.hpp"
 #include "treacle/io/surface/free_surface.hpp"
 #include "treacle/model/case/case_error.hpp"
 #include "treacle/model/case/checks.hpp"
@@ -148,7 +147,6 @@ void runCommand(const RunOptions& options, const Communicator& processes) {
     made = withPlaces(options.input, [&] { return MadeParticles::of(c, warnings, partOf(processes)); });
     if (options.resume.empty()) made.requireParticles(c);
     for (std::string& warning : caseWarnings(c)) warnings.push_back(std::move(warning));
-    releaseShapeFiles(c);
   });
   if (shared) noteParticles(c, made.particles, processes, warnings);
   ParticleNumbers all = numbersOfAll(processes, made.particles.numbers());

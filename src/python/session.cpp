@@ -7,7 +7,6 @@
 #include "treacle/core/error.hpp"
 #include "treacle/core/timer.hpp"
 #include "treacle/io/frames/arrangement.hpp"
-#include "treacle/io/shapes/shape_files.hpp"
 #include "treacle/model/case/checks.hpp"
 #include "treacle/model/case/names.hpp"
 
@@ -56,7 +55,6 @@ Session::Session(Case c, const Options& options) : case_(std::move(c)), threads_
   for (std::string& warning : caseWarnings(case_)) warnings_.push_back(std::move(warning));
   if (!device)
     for (std::string& warning : cpuWarnings(case_)) warnings_.push_back(std::move(warning));
-  releaseShapeFiles(case_);
   StartState start = options.checkpoint.empty() ? StartState{std::move(made.particles)}
                                                 : fittingState(case_, options.checkpoint, made);
   requireMemory(case_, start.particles, device ? &*device : nullptr);

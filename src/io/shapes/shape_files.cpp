@@ -128,11 +128,4 @@ void readShapeFiles(Case& c, const fs::path& folder) {
   }
 }
 
-void releaseShapeFiles(Case& c) {
-  for (Body& body : c.bodies) {
-    if (!body.shape.isThinSheet()) body.shape.file.mesh.value.reset();
-    body.shape.file.particles.value.reset();
-  }
-}
-
 }  // namespace treacle

@@ -166,6 +166,25 @@ TEST_F(MeshCase, runsAndGoesOnFromItsRunDirectory) {
   EXPECT_THAT(without.err, HasSubstr("ball.stl: no such file"));
 }
 
+/// Constants and layers of gas follow speeds that only the points of the mesh know.
+TEST_F(MeshCase, turnsInARun) {
+  const std::string open = replaced(meshCase, "bulk_viscosity = 1e4\nbulk_modulus = 1e6\n", "");
+  shop.put("turning.toml", open + R"(
+[gas]
+
+[[body]]
+name = "stirrer"
+type = "wall"
+material = "syrup"
+shape = "mesh"
+file = "meshes/ball.stl"
+transform = { scale = 3e-4, translate = [6.5e-3, 0, 5e-3] }
+rotation = { center = [6.5e-3, 0, 5e-3], axis = [0, 0, 1], speed = 10 }
+)");
+  const Outcome outcome = shop.call("run turning.toml -o run --quiet");
+  EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+}
+
 TEST_F(MeshCase, takesParticlesOfFrames) {
   ASSERT_EQ(shop.call("run case.toml -o run --quiet").exitCode, 0);
   const std::string given = replaced(replaced(meshCase, "shape = \"mesh\"\nfile = \"meshes/ball.stl\"",

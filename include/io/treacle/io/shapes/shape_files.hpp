@@ -19,7 +19,4 @@ Triangles readTriangles(const std::filesystem::path& path);
 /// these, or does not have the checksum that the case expects.
 void readShapeFiles(Case& c, const std::filesystem::path& folder = {});
 
-/// Gives up what was read of them: who has made the particles of a case needs it no longer, but for thin sheets.
-void releaseShapeFiles(Case& c);
-
 }  // namespace treacle

@@ -15,9 +15,10 @@ inline constexpr double recommendedBulkRatio = 1000;
 /// for a nozzle in which no particle has room.
 void setBulkConstants(Case& c);
 
-/// L sqrt(rho l^d), with the thickness L of the thinnest fluid and the density rho of the heaviest one: the square
-/// root of twice the kinetic energy of a particle over this is a rate at which fluid turns [1/s]; per metre of
-/// depth in 2D. 0 without fluid.
+/// L sqrt(rho l^d) [m kg^0.5; per metre of depth in 2D], with the thickness L of the thinnest fluid, the density
+/// rho of the heaviest one and the spacing l. For a particle of the kinetic energy E, sqrt(2 E) over this is its
+/// speed over L, a rate at which fluid turns [1/s]. 0 without fluid, and where no material's constants follow the
+/// density.
 double turningScale(const Case& c);
 
 /// How dense the fluid is inside.
