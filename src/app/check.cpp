@@ -74,16 +74,19 @@ void printParticles(const Case& c, ParticleNumbers particles, const std::vector<
     print("#   {} '{}': {}\n", nameOf(c.bodies[b].kind), c.bodies[b].name, ofBodies[b].all());
 }
 
-/// As they stand in the case.
-void printMeshes(const Case& c) {
+/// As it stands in the case.
+void printMesh(const Case& c, const Body& body) {
+  const MeshFacts& facts = body.shape.file.mesh.value->facts();
+  const double scale = body.shape.transform ? body.shape.transform->scale : 1;
+  const Extent box = boundingBox(body.shape, c.dimensions);
+  print("# mesh of '{}': {} triangles from {} to {}, area {:.6g} m2, volume enclosed {:.6g} m3, {} open edges\n",
+        body.name, facts.triangles, positionText(box.min, c.dimensions), positionText(box.max, c.dimensions),
+        facts.area * scale * scale, std::abs(facts.volume) * scale * scale * scale, facts.openEdges);
+}
+
+void printShapes(const Case& c) {
   for (const Body& body : c.bodies) {
-    if (!body.shape.file.mesh.value) continue;
-    const MeshFacts& facts = body.shape.file.mesh.value->facts();
-    const double scale = body.shape.transform ? body.shape.transform->scale : 1;
-    const Extent box = boundingBox(body.shape, c.dimensions);
-    print("# mesh of '{}': {} triangles from {} to {}, area {:.6g} m2, volume enclosed {:.6g} m3, {} open edges\n",
-          body.name, facts.triangles, positionText(box.min, c.dimensions), positionText(box.max, c.dimensions),
-          facts.area * scale * scale, std::abs(facts.volume) * scale * scale * scale, facts.openEdges);
+    if (body.shape.file.mesh.value) printMesh(c, body);
     if (body.shape.isThinSheet() && isMiddleOfSolid(c, body))
       print("#   a thin solid: '{}' is the sheet in its middle\n", body.name);
   }
@@ -174,7 +177,7 @@ void checkCommand(const CheckOptions& options) {
   printParticles(c, particles.numbers(), made.ofBodies);
   const double entering = c.dimensions == 2 ? particlesFromNozzles<2>(c) : particlesFromNozzles<3>(c);
   if (entering > 0) print("# inflow: about {:.0f} particles enter until the end\n", entering);
-  printMeshes(c);
+  printShapes(c);
   if (options.processes > 1)
     printSharedMemory(c, particles, options.processes);
   else

@@ -368,6 +368,8 @@ int execute(int argc, char** argv, const Communicator& job) {
     std::string text = e.what();                     // "--threads: At Most 1 required but received 2"
     if (const std::size_t at = text.find(": At Most 1 required"); at != text.npos)
       text = text.substr(0, at) + " is given more than once";
+    if (dynamic_cast<const CLI::ExtrasError*>(&e))  // whose words are in reverse order
+      text = fmt::format("not expected: {}", fmt::join(app.remaining(true), " "));
     return report(fmt::format("{}; --help tells more", text), ExitCode::BadInput);
   } catch (const InputError& e) {
     return report(e.what(), ExitCode::BadInput);

@@ -178,6 +178,19 @@ void requireSound(const Checker& at, const Nozzle& n) {
     at.fail({"up"}, "expected a vector that is not along the direction");
 }
 
+/// What flows through a nozzle, while it does. Formulas that fall to zero may miss it by rounding.
+void requireNotNegative(const Checker& at, std::string_view key, const std::optional<TimeFunction>& f,
+                        const Inflow& i) {
+  constexpr int samples = 1000;
+  const double last = at.wholeCase().time.end, end = i.end > 0 ? std::min(i.end, last) : last;
+  if (!f || f->expression.empty() || !(i.start < end && std::isfinite(end))) return;
+  for (int k = 0; k < samples; ++k) {
+    const double t = i.start + (end - i.start) * k / samples;
+    if (const double value = f->at(t); value < -1e-9 * at.wholeCase().spacing)
+      at.fail({key}, fmt::format("expected no negative numbers, found {:g} at t = {:g} s", value, t));
+  }
+}
+
 void requireSound(const Checker& at, const Inflow& i) {
   if (i.speed.has_value() == i.flowRate.has_value())
     at.fail({i.speed ? "flow_rate" : "speed"},
@@ -187,6 +200,8 @@ void requireSound(const Checker& at, const Inflow& i) {
             fmt::format("expected 0, which is never, or more than start = {} s, found {}", i.start, i.end));
   at.requireFinite({"speed"}, i.speed, i.start);
   at.requireFinite({"flow_rate"}, i.flowRate, i.start);
+  requireNotNegative(at, "speed", i.speed, i);
+  requireNotNegative(at, "flow_rate", i.flowRate, i);
 }
 
 /// Once the nozzle is known to be sound.

@@ -35,6 +35,13 @@ TEST(helpAndVersion, documentTheExitCodes) {
   EXPECT_THAT(version.out, StartsWith("treacle "));
 }
 
+TEST(commandLine, namesUnknownWordsInTheirOrder) {
+  Workshop shop;
+  const Outcome outcome = shop.call("run small.toml --thread 1");
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("not expected: --thread 1; --help tells more"));
+}
+
 TEST(info, namesVersionAndThreads) {
   Workshop shop;
   const Outcome outcome = shop.call("info", "OMP_NUM_THREADS=1");
@@ -48,6 +55,21 @@ TEST(check, takesABackgroundPressure) {
   const Outcome outcome = withSmallCase(shop).call("check small.toml --set method.background_pressure=55");
   EXPECT_EQ(outcome.exitCode, 0);
   EXPECT_THAT(outcome.out, HasSubstr("background_pressure = 55\n"));
+}
+
+TEST(check, saysWhichOutlineIsAThinSolid) {
+  Workshop shop;
+  withSmallCase(shop);
+  shop.put("thin.toml", R"(base = "small.toml"
+[[body]]
+name = "blade"
+type = "wall"
+material = "syrup"
+shape = "polygon"
+fill = "thin-sheet"
+points = [[7e-3, 8e-3], [10e-3, 8e-3], [10e-3, 8.4e-3], [7e-3, 8.4e-3]]
+)");
+  EXPECT_THAT(shop.call("check thin.toml").out, HasSubstr("a thin solid: 'blade' is the sheet in its middle\n"));
 }
 
 TEST(check, printsCountsNumbersAndCaseThatCanBeRunAgain) {
