@@ -201,8 +201,9 @@ class Simulation:
     def step(self) -> StepReport:
         """Makes one time step, and tells what it was.
 
-        Other threads of Python go on meanwhile. Errors: RunError with the diagnosis (no convergence, a particle outside
-        an open domain, a bound of the watch, ...); the simulation then still has the state before the step.
+        Other threads of Python go on meanwhile; those that use the simulation get a RunError. Errors: RunError with the
+        diagnosis (no convergence, a particle outside an open domain, a bound of the watch, ...); the simulation then
+        still has the state before the step.
         """
         report = self._session.advance()
         if report.warnings:

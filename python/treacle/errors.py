@@ -30,7 +30,8 @@ class InputError(ValueError):
 
 
 class RunError(RuntimeError):
-    """A simulation that started well failed. `diagnosis` says why; the simulation keeps its last good state."""
+    """A simulation that started well failed, or another thread uses it. `diagnosis` says why; the simulation keeps its
+    last good state."""
 
     diagnosis: str
 

@@ -29,12 +29,15 @@ int startable(int count) {
   return static_cast<int>(threads.size());
 }
 
-}  // namespace
-
 void useThreads(int count) {
   if (count > 0) omp_set_num_threads(count);
   Team::fitToWork(count == 0 && !std::getenv("OMP_NUM_THREADS"));
 }
+
+}  // namespace
+
+UsedThreads::UsedThreads(int count) : before_(omp_get_max_threads()) { useThreads(count); }
+UsedThreads::~UsedThreads() { omp_set_num_threads(before_); }
 
 void startThreads(int count) {
   useThreads(count);

@@ -11,7 +11,17 @@ inline constexpr int mostThreads = 1024;
 /// there can be.
 void startThreads(int count);
 
-/// The same for the thread that calls it, of threads that have been started: OpenMP keeps their number by thread.
-void useThreads(int count);
+/// The same until it goes, of threads that have been started and for the thread that makes it: OpenMP keeps their
+/// number by thread.
+class UsedThreads {
+ public:
+  explicit UsedThreads(int count);
+  ~UsedThreads();
+  UsedThreads(const UsedThreads&) = delete;
+  UsedThreads& operator=(const UsedThreads&) = delete;
+
+ private:
+  int before_;
+};
 
 }  // namespace treacle

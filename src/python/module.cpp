@@ -3,6 +3,7 @@
 #include "errors.hpp"
 #include "fields.hpp"
 #include "recording.hpp"
+#include "session_caster.hpp"
 #include "treacle/core/device.hpp"
 #include "treacle/core/error.hpp"
 #include "treacle/core/version.hpp"
@@ -217,8 +218,8 @@ void bindSession(nb::module_& m) {
           "name"_a)
       .def(
           "field_in_place",
-          [](nb::handle_t<Session> self, const std::string& name) {
-            return nb::borrow<nb::any>(fieldInPlace(nb::cast<const Session&>(self), name, self));
+          [](const Session& s, const std::string& name) {
+            return nb::borrow<nb::any>(fieldInPlace(s, name, nb::find(s)));
           },
           "name"_a)
       .def(

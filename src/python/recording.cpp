@@ -55,6 +55,7 @@ void Recording::writeCase() {
 }
 
 void Recording::record() {
+  const Session::Use use(session_);
   recorder_.record(session_.lastReport());
   for (const std::string& text : session_.lastReport().warnings)
     log_.warning(fmt::format("step {}: {}", session_.lastReport().step, text));
@@ -64,6 +65,7 @@ void Recording::record() {
 
 /// As much as is possible, whatever goes wrong on the way.
 void Recording::finish(const std::string& failure) {
+  const Session::Use use(session_, true);
   release();
   std::exception_ptr first;
   summary_.message = failure;

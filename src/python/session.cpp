@@ -41,9 +41,22 @@ std::size_t bodyNamed(const Case& c, const std::string& name) {
   throw InputError("body: " + wrongWord(known, name));
 }
 
+std::unique_lock<std::recursive_mutex> taken(std::recursive_mutex& user, bool waits) {
+  std::unique_lock lock(user, std::defer_lock);
+  if (waits)
+    lock.lock();
+  else if (!lock.try_lock())
+    throw RunError("another thread uses the simulation now; expected one thread at a time");
+  return lock;
+}
+
 }  // namespace
 
+Session::Use::Use(const Session& session, bool waits)
+    : lock_(taken(session.user_, waits)), threads_(session.threads_) {}
+
 Session::Session(Case c, const Options& options) : case_(std::move(c)), threads_(options.threads) {
+  const Use use(*this);
   startThreads(threads_);
   const std::optional<DeviceInfo> device = deviceFor(options.backend);
   if (device) backend_ = BackendKind::Cuda;
@@ -71,7 +84,6 @@ Session::Session(Case c, const Options& options) : case_(std::move(c)), threads_
 }
 
 const StepReport& Session::advance() {
-  useThreads(threads_);
   ++version_;
   Timer timer;
   try {
@@ -89,7 +101,6 @@ const StepReport& Session::advance() {
 }
 
 void Session::giveFluid(const GivenFluid& given) {
-  useThreads(threads_);
   simulation_->giveFluid(given);
   if (given.viscosityFactor.empty() || case_.hasViscosityFactors()) return;
   case_.haveViscosityFactors();
@@ -111,7 +122,6 @@ void Session::change(Case next) {
 
 /// The simulation around its particles.
 void Session::makeAnew(const Case& next) {
-  useThreads(threads_);
   AnySimulation changed(next, particles(), backend_, simulation_->step(), simulation_->time());
   ++version_;
   simulation_.emplace(std::move(changed));

@@ -4,6 +4,7 @@
 #include "history_row.hpp"
 #include "probe_recorder.hpp"
 #include "resume.hpp"
+#include "threads.hpp"
 #include "treacle/io/tables/balance_writer.hpp"
 #include "treacle/io/tables/history.hpp"
 #include "treacle/io/tables/rigid_writer.hpp"
@@ -13,6 +14,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +29,18 @@ class Session {
     std::optional<Precision> precision;  // default: the case's
     int threads = 0;                     // 0: as many as OpenMP takes by itself
     std::filesystem::path checkpoint;    // to go on from; empty: what the case starts with
+  };
+
+  /// What a thread has while it uses a session. It may have several of one session; other threads are refused, or
+  /// wait. Meanwhile the thread has the session's number of threads of OpenMP.
+  class Use {
+   public:
+    /// Errors: RunError while another thread uses the session, unless it waits.
+    explicit Use(const Session& session, bool waits = false);
+
+   private:
+    std::unique_lock<std::recursive_mutex> lock_;
+    UsedThreads threads_;
   };
 
   /// Errors: InputError, RunError, std::bad_alloc, as those of `treacle run`.
@@ -88,6 +102,7 @@ class Session {
 
   Case case_;
   int threads_;
+  mutable std::recursive_mutex user_;
   BackendKind backend_ = BackendKind::Cpu;
   std::string device_;
   std::vector<std::string> warnings_;

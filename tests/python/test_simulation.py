@@ -1,5 +1,6 @@
 """Steps, runs, and what is told of them."""
 
+import contextlib
 import ctypes
 import os
 import signal
@@ -57,19 +58,23 @@ def test_run_refuses_a_time_that_never_comes(sim):
 
 
 def test_threads_are_those_of_the_simulation(drop):
-    """Whichever thread of Python makes the steps: OpenMP keeps the number by thread."""
+    """Whichever thread of Python makes the steps: OpenMP keeps the number by thread. The process keeps its own."""
     openmp = ctypes.CDLL("libgomp.so.1")
+    own = openmp.omp_get_max_threads()
     sim = treacle.Simulation(drop, backend="cpu", threads=3)
     found = []
 
     def step():
+        before = len(os.listdir("/proc/self/task"))
         sim.step()
+        found.append(len(os.listdir("/proc/self/task")) - before)
         found.append(openmp.omp_get_max_threads())
 
     thread = threading.Thread(target=step)
     thread.start()
     thread.join()
-    assert found == [3]
+    assert found == [2, own]
+    assert openmp.omp_get_max_threads() == own
 
 
 def test_automatic_steps_meet_the_end(drop):
@@ -183,6 +188,29 @@ def test_other_threads_go_on_during_steps(sim):
         done.set()
         thread.join()
     assert turns > 0
+
+
+def test_one_thread_at_a_time(sim):
+    """A second one is refused while a step is made."""
+    done = threading.Event()
+
+    def make_steps():
+        while not done.is_set():
+            with contextlib.suppress(treacle.RunError):
+                sim.step()
+
+    thread = threading.Thread(target=make_steps)
+    thread.start()
+    try:
+        for use in (sim.step, lambda: sim.fluid.positions, lambda: sim.history, lambda: sim.time):
+            with pytest.raises(treacle.RunError, match="another thread uses the simulation"):
+                end = time.monotonic() + 20
+                while time.monotonic() < end:
+                    use()
+    finally:
+        done.set()
+        thread.join()
+    assert sim.step().step == len(sim.history["step"])
 
 
 def test_simulations_live_side_by_side(drop):
