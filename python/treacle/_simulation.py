@@ -264,7 +264,7 @@ class Simulation:
                 if recording is not None:
                     recording.record()
                 bar.update(max(min(session.time, end) - start - bar.n, 0.0))
-                if callback is not None and callback(self) is False:
+                if callback is not None and _is_false(callback(self)):
                     return
 
     def _is_there(self, until: float | None) -> bool:
@@ -350,3 +350,9 @@ class Simulation:
 
 def _table(columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     return {name: values.astype(np.int64) if name in _WHOLE else values for name, values in columns.items()}
+def _is_false(answer: object) -> bool:
+    """Whether that is False, of Python or of a library of arrays."""
+    kind = getattr(answer, "dtype", type(answer).__name__)
+    return str(kind).rsplit(".")[-1] == "bool" and not answer
+
+

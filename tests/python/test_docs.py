@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -24,6 +26,8 @@ def test_snippets_run(tmp_path, monkeypatch):
     names = {}
     for line, text in snippets:
         exec(compile("\n" * line + text, page, "exec"), names)
+        if "until_it_touches" in text:
+            assert names["sim"].time == pytest.approx(0.012)
     assert names["resumed"].at_end
     assert len(names["height"]) == 1 + len(names["force"]) > 10  # one before the first step, which has no load
     assert names["frame"].time == 0.01

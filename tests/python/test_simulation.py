@@ -87,6 +87,12 @@ def test_automatic_steps_meet_the_end(drop):
 def test_callback_ends_the_run(sim):
     sim.run(callback=lambda s: s.step_count < 3, progress=False)
     assert sim.step_count == 3
+    sim.run(callback=lambda s: np.int64(s.step_count) < 5, progress=False)
+    assert sim.step_count == 5
+    sim.run(callback=lambda s: np.array(s.step_count < 7), progress=False)
+    assert sim.step_count == 7
+    sim.run(callback=lambda s: 0, progress=False)
+    assert sim.at_end
 
 
 def test_same_bits_as_the_program(drop_file, tmp_path):
