@@ -99,6 +99,10 @@ class Simulation:
             case = Path(path).parent / "case.toml"
         self._start(case, os.fspath(path), backend, resolution, precision, overrides, threads)
         return self
+            if not Path(path).exists():
+                raise InputError(f"checkpoint {path}: no such file", file=os.fspath(path))
+            if not case.exists():
+                raise InputError(f"checkpoint {path}: expected case.toml beside it, or the case as second argument")
 
     def _start(
         self,

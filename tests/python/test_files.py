@@ -46,6 +46,10 @@ def test_errors_of_files(sim, tmp_path):
         sim.write_frame(tmp_path / "none" / "fluid.vtp")
     with pytest.raises(treacle.RunError, match="cannot write"):
         sim.write_checkpoint(tmp_path / "none" / "state.h5")
+    with pytest.raises(treacle.InputError, match=r"none\.h5: no such file"):
+        treacle.Simulation.from_checkpoint(tmp_path / "none.h5")
+    with pytest.raises(treacle.InputError, match=r"bad\.vtp: expected case\.toml beside it"):
+        treacle.Simulation.from_checkpoint(tmp_path / "bad.vtp")
     (tmp_path / "case.toml").write_text(sim.case_text)
     with pytest.raises(treacle.InputError, match=r"bad\.vtp: not a treacle checkpoint"):
         treacle.Simulation.from_checkpoint(tmp_path / "bad.vtp")
