@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _treacle
+from ._arguments import KnownNames
 from ._arrays import DeviceArray, given_array
 from ._toml import override_texts, quoted
 from .errors import InputError
@@ -16,7 +17,7 @@ Array = NDArray[Any] | DeviceArray
 """A copy in NumPy where the CPU computes; the field itself, in the GPU's memory, where that does."""
 
 
-class Fluid:
+class Fluid(KnownNames):
     """The particles of the fluid: n of them in D dimensions.
 
     Where the CPU computes, reading a field gives a copy of it as an array of NumPy's, which stays what it is. On the
@@ -54,7 +55,7 @@ class Fluid:
 
     @positions.setter
     def positions(self, values: Any) -> None:
-        self.set(positions=values)
+        self._assign("positions", values)
 
     @property
     def velocities(self) -> Array:
@@ -63,7 +64,7 @@ class Fluid:
 
     @velocities.setter
     def velocities(self, values: Any) -> None:
-        self.set(velocities=values)
+        self._assign("velocities", values)
 
     @property
     def temperatures(self) -> Array | None:
@@ -72,7 +73,7 @@ class Fluid:
 
     @temperatures.setter
     def temperatures(self, values: Any) -> None:
-        self.set(temperatures=values)
+        self._assign("temperatures", values)
 
     @property
     def viscosities(self) -> NDArray[np.float64]:
@@ -119,7 +120,7 @@ class Fluid:
 
     @viscosity_factors.setter
     def viscosity_factors(self, values: Any) -> None:
-        self.set(viscosity_factors=values)
+        self._assign("viscosity_factors", values)
 
     @property
     def states(self) -> dict[str, Array]:
@@ -158,6 +159,11 @@ class Fluid:
     def ids(self) -> Array:
         """(n,) names that particles keep for good."""
         return self._field("ids")
+
+    def _assign(self, name: str, values: Any) -> None:
+        if values is None:
+            raise InputError(f"{name}: expected an array of numbers, found None")
+        self.set(**{name: values})
 
     def set(
         self,

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from tqdm.auto import tqdm
 
 from . import _treacle
+from ._arguments import KnownNames
 from ._fluid import Fluid
 from ._frames import Frame, frame_of
 from ._recording import Recording, warn
@@ -28,7 +29,7 @@ Overrides = Mapping[str, Any] | Iterable[str] | None
 _WHOLE = {"step", "iterations", "fallbacks", "particles", "inflow_particles", "outflow_particles"}
 
 
-class Simulation:
+class Simulation(KnownNames):
     """A case that is computed step by step.
 
     `case` is a dict as its TOML file would be, a `treacle.Case`, or the path of a case file. Files that a dict or

@@ -10,9 +10,11 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Literal
 
+from ._arguments import KnownNames
+
 
 @dataclass(kw_only=True)
-class TimeTable:
+class TimeTable(KnownNames):
     """A number that follows the time by straight lines, from lists or from two columns of a file."""
 
     times: Sequence[float] | None = None
@@ -23,7 +25,7 @@ class TimeTable:
 
 
 @dataclass(kw_only=True)
-class Domain:
+class Domain(KnownNames):
     min: Sequence[float] | None = None
     """[m]"""
     max: Sequence[float] | None = None
@@ -32,13 +34,13 @@ class Domain:
 
 
 @dataclass(kw_only=True)
-class Gravity:
+class Gravity(KnownNames):
     acceleration: Sequence[float | str | TimeTable] | None = None
     """[m/s2]"""
 
 
 @dataclass(kw_only=True)
-class Rotation:
+class Rotation(KnownNames):
     center: Sequence[float] | None = None
     """[m]"""
     speed: float | None = None
@@ -50,7 +52,7 @@ class Rotation:
 
 
 @dataclass(kw_only=True)
-class Rheology:
+class Rheology(KnownNames):
     model: Literal["power-law", "cross", "carreau-yasuda", "bingham", "herschel-bulkley", "casson"] | None = None
     consistency: float | None = None
     """[Pa s^n]"""
@@ -75,7 +77,7 @@ class Rheology:
 
 
 @dataclass(kw_only=True)
-class ElasticMode:
+class ElasticMode(KnownNames):
     name: str | None = None
     model: Literal["oldroyd-b", "giesekus", "linear-ptt", "exponential-ptt"] | None = None
     viscosity: float | None = None
@@ -87,7 +89,7 @@ class ElasticMode:
 
 
 @dataclass(kw_only=True)
-class MaterialState:
+class MaterialState(KnownNames):
     name: str | None = None
     law: Literal["expression", "kamal-sourour", "houska", "roussel"] | None = None
     start: float | None = None
@@ -117,7 +119,7 @@ class MaterialState:
 
 
 @dataclass(kw_only=True)
-class Gelling:
+class Gelling(KnownNames):
     state: str | None = None
     conversion: float | None = None
     a: float | None = None
@@ -126,14 +128,14 @@ class Gelling:
 
 
 @dataclass(kw_only=True)
-class ContactAngle:
+class ContactAngle(KnownNames):
     name: str | None = None
     angle: float | None = None
     """[deg]"""
 
 
 @dataclass(kw_only=True)
-class ViscosityShift:
+class ViscosityShift(KnownNames):
     model: Literal["arrhenius", "vft", "wlf", "table"] | None = None
     reference_temperature: float | None = None
     """[K]"""
@@ -154,7 +156,7 @@ class ViscosityShift:
 
 
 @dataclass(kw_only=True)
-class Freezing:
+class Freezing(KnownNames):
     solidus: float | None = None
     """[K]"""
     liquidus: float | None = None
@@ -169,7 +171,7 @@ class Freezing:
 
 
 @dataclass(kw_only=True)
-class Material:
+class Material(KnownNames):
     name: str | None = None
     density: float | None = None
     """[kg/m3]"""
@@ -207,13 +209,13 @@ class Material:
 
 
 @dataclass(kw_only=True)
-class StateStart:
+class StateStart(KnownNames):
     name: str | None = None
     value: float | str | None = None
 
 
 @dataclass(kw_only=True)
-class Transform:
+class Transform(KnownNames):
     scale: float | None = None
     angle: float | None = None
     """[deg]"""
@@ -228,7 +230,7 @@ class Transform:
 
 
 @dataclass(kw_only=True)
-class Oscillation:
+class Oscillation(KnownNames):
     amplitude: Sequence[float] | None = None
     """[m]"""
     period: float | None = None
@@ -238,7 +240,7 @@ class Oscillation:
 
 
 @dataclass(kw_only=True)
-class Nozzle:
+class Nozzle(KnownNames):
     shape: Literal["disc", "rectangle", "polygon"] | None = None
     center: Sequence[float] | None = None
     """[m]"""
@@ -259,7 +261,7 @@ class Nozzle:
 
 
 @dataclass(kw_only=True)
-class Hinge:
+class Hinge(KnownNames):
     point: Sequence[float] | None = None
     """[m]"""
     axis: Sequence[float] | None = None
@@ -267,7 +269,7 @@ class Hinge:
 
 
 @dataclass(kw_only=True)
-class Spring:
+class Spring(KnownNames):
     name: str | None = None
     to: str | None = None
     anchor: Sequence[float] | None = None
@@ -283,7 +285,7 @@ class Spring:
 
 
 @dataclass(kw_only=True)
-class Body:
+class Body(KnownNames):
     name: str | None = None
     type: Literal["fluid", "wall", "inflow", "rigid"] | None = None
     material: str | None = None
@@ -374,7 +376,7 @@ class Body:
 
 
 @dataclass(kw_only=True)
-class Outflow:
+class Outflow(KnownNames):
     name: str | None = None
     shape: Literal["box", "plane"] | None = None
     min: Sequence[float] | None = None
@@ -388,7 +390,7 @@ class Outflow:
 
 
 @dataclass(kw_only=True)
-class Opening:
+class Opening(KnownNames):
     name: str | None = None
     material: str | None = None
     face: Nozzle | None = None
@@ -402,7 +404,7 @@ class Opening:
 
 
 @dataclass(kw_only=True)
-class Time:
+class Time(KnownNames):
     step: float | Literal["auto"] | None = None
     """[s]"""
     end: float | None = None
@@ -416,7 +418,7 @@ class Time:
 
 
 @dataclass(kw_only=True)
-class Method:
+class Method(KnownNames):
     name: Literal["mph-i", "isph"] | None = None
     scheme: Literal["accurate", "published"] | None = None
     pressure_radius: float | None = None
@@ -442,13 +444,13 @@ class Method:
 
 
 @dataclass(kw_only=True)
-class RheologyIteration:
+class RheologyIteration(KnownNames):
     iterations: int | None = None
     tolerance: float | None = None
 
 
 @dataclass(kw_only=True)
-class Heat:
+class Heat(KnownNames):
     ambient_temperature: float | None = None
     """[K]"""
     heat_transfer: float | None = None
@@ -459,7 +461,7 @@ class Heat:
 
 
 @dataclass(kw_only=True)
-class Vent:
+class Vent(KnownNames):
     name: str | None = None
     min: Sequence[float] | None = None
     """[m]"""
@@ -468,7 +470,7 @@ class Vent:
 
 
 @dataclass(kw_only=True)
-class Gas:
+class Gas(KnownNames):
     pressure: float | None = None
     """[Pa]"""
     exponent: float | None = None
@@ -476,7 +478,7 @@ class Gas:
 
 
 @dataclass(kw_only=True)
-class Multigrid:
+class Multigrid(KnownNames):
     finest_sweeps: int | None = None
     middle_sweeps: int | None = None
     coarsest_sweeps: int | None = None
@@ -485,7 +487,7 @@ class Multigrid:
 
 
 @dataclass(kw_only=True)
-class Projected:
+class Projected(KnownNames):
     pressure_degree: int | None = None
     grid_degree: int | None = None
     velocity_degree: int | None = None
@@ -493,19 +495,19 @@ class Projected:
 
 
 @dataclass(kw_only=True)
-class Cells:
+class Cells(KnownNames):
     levels: int | None = None
     sweeps: int | None = None
 
 
 @dataclass(kw_only=True)
-class Hats:
+class Hats(KnownNames):
     grid_degree: int | None = None
     iteration_bound: int | None = None
 
 
 @dataclass(kw_only=True)
-class Solver:
+class Solver(KnownNames):
     krylov: Literal["cg", "cr"] | None = None
     preconditioner: Literal["projected-multigrid", "bucket-multigrid", "block-jacobi", "hat-multigrid", "cell-multigrid", "jacobi", "none"] | None = None
     tolerance: float | None = None
@@ -523,7 +525,7 @@ class Solver:
 
 
 @dataclass(kw_only=True)
-class Output:
+class Output(KnownNames):
     interval: float | None = None
     """[s]"""
     checkpoint_interval: float | None = None
@@ -538,7 +540,7 @@ class Output:
 
 
 @dataclass(kw_only=True)
-class ProbeBox:
+class ProbeBox(KnownNames):
     min: Sequence[float] | None = None
     """[m]"""
     max: Sequence[float] | None = None
@@ -546,7 +548,7 @@ class ProbeBox:
 
 
 @dataclass(kw_only=True)
-class Probe:
+class Probe(KnownNames):
     name: str | None = None
     type: Literal["point", "line", "plane", "height", "flow", "region", "load", "wall-pressure"] | None = None
     interval: float | None = None
@@ -575,7 +577,7 @@ class Probe:
 
 
 @dataclass(kw_only=True)
-class Watch:
+class Watch(KnownNames):
     energy: float | None = None
     courant: float | None = None
     inside_walls: float | None = None
@@ -583,7 +585,7 @@ class Watch:
 
 
 @dataclass(kw_only=True)
-class Width:
+class Width(KnownNames):
     axis: Literal["x", "y", "z"] | None = None
     from_: float | None = None
     """[m]"""
@@ -593,7 +595,7 @@ class Width:
 
 
 @dataclass(kw_only=True)
-class Case:
+class Case(KnownNames):
     base: str | None = None
     title: str | None = None
     dimensions: int | None = None

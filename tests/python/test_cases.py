@@ -115,6 +115,14 @@ def test_errors_of_overrides_and_arguments(drop):
 
 def test_values_that_toml_does_not_have(drop):
     drop["domain"]["min"] = [object(), 0]
+def test_misspelt_attributes_are_refused():
+    body = cases.Body(name="drop")
+    with pytest.raises(AttributeError, match="Body has no attribute 'rotaton'; did you mean 'rotation'"):
+        body.rotaton = cases.Rotation(speed=1)
+    body.rotation = cases.Rotation(speed=1)
+    assert body == cases.Body(name="drop", rotation=cases.Rotation(speed=1))
+
+
     with pytest.raises(treacle.InputError, match=r"domain.min: expected a number.*found object"):
         treacle.Simulation(drop)
     with pytest.raises(treacle.InputError, match="expected a whole number of at most 64 bits"):

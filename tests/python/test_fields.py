@@ -130,6 +130,9 @@ def test_bad_values_change_nothing(sim):
     ):
         with np.errstate(invalid="ignore"), pytest.raises(treacle.InputError, match=message):
             sim.fluid.set(**values)
+    for name in ("positions", "velocities", "temperatures", "viscosity_factors"):
+        with pytest.raises(treacle.InputError, match=f"{name}: expected an array of numbers, found None"):
+            setattr(sim.fluid, name, None)
     np.testing.assert_array_equal(sim.fluid.positions, x)
     np.testing.assert_array_equal(sim.fluid.velocities, u)
     sim.step()

@@ -219,6 +219,18 @@ def test_one_thread_at_a_time(sim):
     assert sim.step().step == len(sim.history["step"])
 
 
+def test_misspelt_attributes_are_refused(sim):
+    with pytest.raises(AttributeError, match=r"Simulation has no attribute 'tolerance'$"):
+        sim.tolerance = 3
+    with pytest.raises(AttributeError, match="Fluid has no attribute 'velocity'; did you mean 'velocities'"):
+        sim.fluid.velocity = 0
+
+    class Derived(treacle.Simulation):
+        pass
+
+    Derived.__new__(Derived).tolerance = 3
+
+
 def test_simulations_live_side_by_side(drop):
     one, two = (treacle.Simulation(drop, backend="cpu") for _ in range(2))
     for _ in range(3):
