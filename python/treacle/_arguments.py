@@ -1,9 +1,45 @@
-"""Attributes that are misspelt."""
+"""Arguments, and attributes that are misspelt."""
 
 from __future__ import annotations
 
 import difflib
-from typing import Any
+import operator
+import reprlib
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from .errors import InputError
+
+T = TypeVar("T", str, int, float)
+
+
+def _string(value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError
+    return value
+
+
+def _number(value: Any) -> float:
+    if isinstance(value, str):
+        raise TypeError
+    return float(value)
+
+
+_KINDS: dict[type, tuple[Callable[[Any], Any], str]] = {
+    str: (_string, "a string"),
+    int: (operator.index, "a whole number"),
+    float: (_number, "a number"),
+}
+
+
+def argument(name: str, value: Any, kind: type[T]) -> T:
+    """The value as that kind. Errors: InputError where it is of another one."""
+    convert, expected = _KINDS[kind]
+    try:
+        converted: T = convert(value)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected {expected}, found {reprlib.repr(value)}") from None
+    return converted
 
 
 class KnownNames:

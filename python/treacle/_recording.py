@@ -15,7 +15,7 @@ class Recording:
 
     def __init__(self, session: _treacle.Session, directory: str | os.PathLike[str], force: bool) -> None:
         self._session = session
-        self._native = _treacle.Recording(session, os.fspath(directory), force)
+        self._native = _treacle.Recording(session, os.fspath(directory), bool(force))
         self._step = session.step
 
     def record(self) -> None:

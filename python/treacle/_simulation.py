@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from tqdm.auto import tqdm
 
 from . import _treacle
-from ._arguments import KnownNames
+from ._arguments import KnownNames, argument
 from ._fluid import Fluid
 from ._frames import Frame, frame_of
 from ._recording import Recording, warn
@@ -38,9 +38,10 @@ class Simulation(KnownNames):
     - `backend`: "cpu", "cuda", or "auto", which takes the GPU where there is one.
     - `resolution` divides spacing and time step.
     - `precision`: "mixed" or "double"; the case's if it is None.
-    - `overrides`: changes of single keys, `{"time.end": 1, "honey.density": 1400}`, or texts as `treacle run --set`
-      takes them.
-    - `threads`: number of threads of the CPU, whichever thread of Python calls; 0 leaves it to OpenMP.
+    - `overrides`: changes of single keys, `{"time.end": 1, "honey.density": 1400}`, or a list of texts as
+      `treacle run --set` takes them, `["time.end=1", "honey.density=1400"]`.
+    - `threads`: number of threads of the CPU, from 1, whichever thread of Python calls; by default as many as
+      `treacle run` takes.
 
     Errors: InputError for what is wrong with the case or the arguments; RunError for a machine with too little memory.
     """
@@ -53,7 +54,7 @@ class Simulation(KnownNames):
         resolution: float | None = None,
         precision: Precision | None = None,
         overrides: Overrides = None,
-        threads: int = 0,
+        threads: int | None = None,
     ) -> None:
         self._start(case, "", backend, resolution, precision, overrides, threads)
 
@@ -66,7 +67,7 @@ class Simulation(KnownNames):
         resolution: float | None = None,
         precision: Precision | None = None,
         overrides: Overrides = None,
-        threads: int = 0,
+        threads: int | None = None,
     ) -> Simulation:
         """The simulation of a case file. Arguments and errors: those of the class; the errors say file and line."""
         return cls(
@@ -88,7 +89,7 @@ class Simulation(KnownNames):
         resolution: float | None = None,
         precision: Precision | None = None,
         overrides: Overrides = None,
-        threads: int = 0,
+        threads: int | None = None,
     ) -> Simulation:
         """Goes on from a checkpoint, as `treacle run --resume` does.
 
@@ -98,12 +99,12 @@ class Simulation(KnownNames):
         self = cls.__new__(cls)
         if case is None:
             case = Path(path).parent / "case.toml"
-        self._start(case, os.fspath(path), backend, resolution, precision, overrides, threads)
-        return self
             if not Path(path).exists():
                 raise InputError(f"checkpoint {path}: no such file", file=os.fspath(path))
             if not case.exists():
                 raise InputError(f"checkpoint {path}: expected case.toml beside it, or the case as second argument")
+        self._start(case, os.fspath(path), backend, resolution, precision, overrides, threads)
+        return self
 
     def _start(
         self,
@@ -113,7 +114,7 @@ class Simulation(KnownNames):
         resolution: float | None,
         precision: Precision | None,
         overrides: Overrides,
-        threads: int,
+        threads: int | None,
     ) -> None:
         texts = override_texts(overrides)
         if resolution is not None:
@@ -123,7 +124,13 @@ class Simulation(KnownNames):
             if isinstance(case, (str, os.PathLike))
             else _treacle.parse_case(case_text(case), texts)
         )
-        self._session = _treacle.Session.make(data, backend, precision or "", threads, checkpoint)
+        self._session = _treacle.Session.make(
+            data,
+            argument("backend", backend, str),
+            "" if precision is None else argument("precision", precision, str),
+            None if threads is None else argument("threads", threads, int),
+            checkpoint,
+        )
         self._fluid = Fluid(self._session)
         warn(self._session.take_warnings())
 
@@ -236,6 +243,7 @@ class Simulation(KnownNames):
         written. Ctrl-C ends the run after the step at hand, with KeyboardInterrupt. The simulation then is as after the
         last step, and a run directory is complete up to there.
         """
+        until = None if until is None else argument("until", until, float)
         recording = None if output is None else Recording(self._session, output, force)
         try:
             self._make_steps(until, callback, recording, progress)
@@ -254,7 +262,7 @@ class Simulation(KnownNames):
         progress: bool,
     ) -> None:
         session = self._session
-        start, end = session.time, session.end if until is None else float(until)
+        start, end = session.time, session.end if until is None else until
         if math.isnan(end):
             raise InputError("until: expected a time [s], found nan")
         with tqdm(
@@ -308,8 +316,12 @@ class Simulation(KnownNames):
         the start of a simulation for a body without such tables, and for a moment the memory of another one. Errors:
         InputError for a body that does not have what is steered, or moves by an oscillation or a formula.
         """
-        numbers = None if velocity is None else [float(v) for v in np.atleast_1d(velocity)]
-        self._session.steer(body, numbers, angular_velocity, speed, flow_rate)
+        given = {"angular_velocity": angular_velocity, "speed": speed, "flow_rate": flow_rate}
+        self._session.steer(
+            argument("body", body, str),
+            None if velocity is None else [argument("velocity", v, float) for v in np.atleast_1d(velocity).tolist()],
+            *(None if value is None else argument(name, value, float) for name, value in given.items()),
+        )
 
     @property
     def history(self) -> dict[str, NDArray[Any]]:
@@ -336,14 +348,14 @@ class Simulation(KnownNames):
 
         Errors: InputError for a name that is none.
         """
-        return _table(self._session.probe(name))
+        return _table(self._session.probe(argument("name", name, str)))
 
     def write_frame(self, path: str | os.PathLike[str], *, walls: bool = False) -> None:
         """Writes the fluid, or the walls, as a .vtp file with the fields that `output` of the case says.
 
         Errors: RunError if the file cannot be written; no part of it is then left.
         """
-        self._session.write_frame(os.fspath(path), walls)
+        self._session.write_frame(os.fspath(path), bool(walls))
 
     def write_checkpoint(self, path: str | os.PathLike[str]) -> None:
         """Writes the complete state as an .h5 file, for `from_checkpoint` or `treacle run --resume`.
@@ -353,11 +365,11 @@ class Simulation(KnownNames):
         self._session.write_checkpoint(os.fspath(path))
 
 
-def _table(columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    return {name: values.astype(np.int64) if name in _WHOLE else values for name, values in columns.items()}
 def _is_false(answer: object) -> bool:
     """Whether that is False, of Python or of a library of arrays."""
     kind = getattr(answer, "dtype", type(answer).__name__)
     return str(kind).rsplit(".")[-1] == "bool" and not answer
 
 
+def _table(columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    return {name: values.astype(np.int64) if name in _WHOLE else values for name, values in columns.items()}

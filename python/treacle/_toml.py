@@ -25,8 +25,8 @@ def override_texts(overrides: Mapping[str, Any] | Iterable[str] | None) -> list[
         return []
     if isinstance(overrides, Mapping):
         return [f"{key}={_text(_plain(value, key))}" for key, value in overrides.items()]
-    if isinstance(overrides, str):
-        raise InputError('overrides: expected a dict or a list of "key=value", found a string')
+    if isinstance(overrides, str) or not isinstance(overrides, Iterable):
+        raise InputError(f'overrides: expected a dict or a list of "key=value", found {type(overrides).__name__}')
     return [str(text) for text in overrides]
 
 

@@ -40,7 +40,7 @@ E wordOf(const std::string& word, const char* what, std::initializer_list<std::p
 }
 
 std::unique_ptr<Session> makeSession(const Case& c, const std::string& backend, const std::string& precision,
-                                     int threads, const std::string& checkpoint) {
+                                     std::optional<int> threads, const std::string& checkpoint) {
   Session::Options options;
   options.backend = wordOf<BackendChoice>(
       backend, "backend",
@@ -48,9 +48,9 @@ std::unique_ptr<Session> makeSession(const Case& c, const std::string& backend, 
   if (!precision.empty())
     options.precision =
         wordOf<Precision>(precision, "precision", {{"mixed", Precision::Mixed}, {"double", Precision::Double}});
-  if (threads < 0)
-    throw InputError(fmt::format("threads: expected a whole number of at least 0, found {}", threads));
-  options.threads = threads;
+  if (threads && *threads < 1)
+    throw InputError(fmt::format("threads: expected a whole number of at least 1, found {}", *threads));
+  options.threads = threads.value_or(0);
   options.checkpoint = checkpoint;
   return std::make_unique<Session>(c, options);
 }
@@ -153,7 +153,8 @@ void bindReport(nb::module_& m) {
 
 void bindSession(nb::module_& m) {
   nb::class_<Session>(m, "Session", "A case, its simulation and what its steps have told.")
-      .def_static("make", &makeSession, "case"_a, "backend"_a, "precision"_a, "threads"_a, "checkpoint"_a, Quiet())
+      .def_static("make", &makeSession, "case"_a, "backend"_a, "precision"_a, "threads"_a.none(), "checkpoint"_a,
+                  Quiet())
       .def("advance", &Session::advance, Quiet(), nb::rv_policy::copy)
       .def("change", &Session::change, "case"_a, Quiet())
       .def("steer", &steer, "body"_a, "velocity"_a.none(), "spin"_a.none(), "speed"_a.none(), "flow_rate"_a.none(),

@@ -54,6 +54,8 @@ def test_run_to_a_time_and_to_the_end(sim):
 def test_run_refuses_a_time_that_never_comes(sim):
     with pytest.raises(treacle.InputError, match="until: expected a time"):
         sim.run(until=float("nan"))
+    with pytest.raises(treacle.InputError, match="until: expected a number, found 'end'"):
+        sim.run(until="end")
     assert sim.step_count == 0
 
 
@@ -74,6 +76,15 @@ def test_threads_are_those_of_the_simulation(drop):
     thread.start()
     thread.join()
     assert found == [2, own]
+    assert openmp.omp_get_max_threads() == own
+
+
+@pytest.mark.parametrize("threads", [0, -1, 9999, "2", 1.0])
+def test_number_of_threads_that_is_refused_changes_nothing(drop, threads):
+    openmp = ctypes.CDLL("libgomp.so.1")
+    own = openmp.omp_get_max_threads()
+    with pytest.raises(treacle.InputError, match=f"threads: expected .* found '?{threads}"):
+        treacle.Simulation(drop, backend="cpu", threads=threads)
     assert openmp.omp_get_max_threads() == own
 
 
@@ -138,6 +149,8 @@ def test_tables_grow_with_the_steps(sim):
     assert sim.rigid_bodies == {}
     with pytest.raises(treacle.InputError, match="expected 'all', 'load' or 'way-up', found 'lod'"):
         sim.probe("lod")
+    with pytest.raises(treacle.InputError, match="name: expected a string, found 3"):
+        sim.probe(3)
 
 
 @pytest.mark.filterwarnings("ignore::treacle.SimulationWarning")

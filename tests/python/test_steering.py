@@ -140,6 +140,9 @@ def test_what_cannot_be_steered_changes_nothing(bead):
         ({"body": "nozzle", "speed": 1}, "the case gives its flow_rate"),
         ({"body": "floor", "angular_velocity": 1}, "it has no rotation"),
         ({"body": "nozzle", "angular_velocity": 1}, "it has no rotation"),
+        ({"body": 1, "velocity": [1, 0]}, "body: expected a string, found 1"),
+        ({"body": "nozzle", "velocity": "fast"}, "velocity: expected a number, found 'fast'"),
+        ({"body": "nozzle", "flow_rate": "much"}, "flow_rate: expected a number, found 'much'"),
         ({"body": "nozzle", "velocity": [float("nan"), 0]}, "expected finite numbers"),
     ):
         with pytest.raises(treacle.InputError, match=message):
