@@ -157,6 +157,15 @@ double IsphOracle<D>::missing(std::uint32_t i) const {
 }
 
 template <int D>
+Vec<D> IsphOracle<D>::onSurface(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const {
+  const auto at = face(i, j);
+  if (!at || motion.empty()) return v[j];
+  const Vec<3> omega = motion[s.particles.body[j]].spin;
+  const Vec<3> way = resized<3>((at->depth / (at->depth + std::max(at->height, 0.0))) * apart(i, j));
+  return v[j] + resized<D>(cross(omega, way));
+}
+
+template <int D>
 Vec<D> IsphOracle<D>::seen(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const {
   return isWall(j) ? 2.0 * v[j] - v[i] : v[j];
 }
@@ -166,7 +175,7 @@ Vec<D> IsphOracle<D>::predicted(const std::vector<Vec<D>>& v, std::uint32_t i) c
   Vec<D> force = material(i).density * resized<D>(s.c.gravity);
   forEachOther(i, [&](std::uint32_t j) {
     if (isWall(j) && s.c.method.isph.walls == WallSlip::FreeSlip) return;
-    const Vec<D> relative = isWall(j) ? wallFactor(i, j) * (v[i] - v[j]) : v[i] - v[j];
+    const Vec<D> relative = isWall(j) ? wallFactor(i, j) * (v[i] - onSurface(v, i, j)) : v[i] - v[j];
     force += (2 * laplacian(i, j) * mu(i, j)) * relative;
   });
   return v[i] + (dt / material(i).density) * force;

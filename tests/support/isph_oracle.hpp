@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "support/isph_scene.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 
 namespace treacle::test {
 
@@ -12,6 +13,7 @@ template <int D>
 struct IsphOracle {
   const IsphScene<D>& s;
   double l, h, volume, dt;
+  std::vector<WallMotion<D>> motion{};  // per body; empty: no wall turns
 
   explicit IsphOracle(const IsphScene<D>& scene)
       : s(scene),
@@ -74,6 +76,8 @@ struct IsphOracle {
   /// By what the difference of velocities at a wall is multiplied for viscous forces: (height + depth) / height,
   /// the height at least l / 4, or 2 without faces.
   double wallFactor(std::uint32_t i, std::uint32_t j) const;
+  /// The velocity of the body of wall particle j where the line to i crosses its surface: by `motion`, if any.
+  Vec<D> onSurface(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const;
   /// What particle i sees in j: its velocity, or that of a wall's image, 2 u_wall - v_i.
   Vec<D> seen(const std::vector<Vec<D>>& v, std::uint32_t i, std::uint32_t j) const;
   /// eqs. (6) and (7); mu nu^-1 of a pair by their harmonic mean, at walls mu of the fluid.

@@ -23,6 +23,10 @@ class ExplicitForces {
   virtual void allForces(FlowState<D, Backend>&, const MphPairs<D>&, const ClusterListView& walls,
                          std::span<Vec<D>> y, std::span<Vec<D>> load) const = 0;
 
+  /// Of the last allForces(): the couples that act on walls beside these forces, from the first wall particle on
+  /// [N/m2], or nothing.
+  virtual std::span<const Vec<3>> couples() const { return {}; }
+
   /// Adds forces and torques on bodies of the case that are in no pair of particles [N], [N m]; in 2D per metre.
   virtual void addLoads(std::span<LoadSums>) const {}
 };

@@ -32,6 +32,9 @@ class ForcesAround : public ExplicitForces<D, Backend> {
     addSurfaceForces<D>(state.context, onWalls_.span(), y.subspan(pairs.fluidCount));
     addSurfaceForces<D>(state.context, onWalls_.span(), load);
   }
+  std::span<const Vec<3>> couples() const override {
+    return others_ ? others_->couples() : std::span<const Vec<3>>{};
+  }
   void addLoads(std::span<LoadSums> loads) const final {
     if (others_) others_->addLoads(loads);
   }

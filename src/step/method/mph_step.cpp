@@ -285,6 +285,7 @@ class MphStep final : public StepMethod<D, Backend> {
     treacle::placeWallSurfaces(state_, pairs_.fluidCount, pairs_.activeCount - pairs_.fluidCount, wallSurface_);
     if (state_.particles.wallSurface.empty()) return;
     neighbourhood_.setWallSurfaces(wallSurface_);
+    neighbourhood_.setWallMotion(state_.wallMotion, state_.particles.body.data());
     if (!pairs_.slips()) return;
     slipSide_.resize(state_.context, pairs_.fluidCount);
     slipSides<D>(state_.context, pairs_, slipSide_.span().first(pairs_.ownFluid()));

@@ -72,9 +72,11 @@ class StepElasticity final : public ForcesAround<D, Backend> {
                  state.particles.conformation[k].data());
   }
 
+  std::span<const Vec<3>> couples() const override { return couple_; }
+
   std::size_t bytes() const {
-    std::size_t sum = implicit_.bytes() + correction_.bytes() + gradient_.bytes() + carried_.bytes() +
-                      slowness_.bytes() + power_.bytes() + this->forceBytes();
+    std::size_t sum = couple_.bytes() + implicit_.bytes() + correction_.bytes() + gradient_.bytes() +
+                      carried_.bytes() + slowness_.bytes() + power_.bytes() + this->forceBytes();
     for (const auto& next : next_) sum += next.bytes();
     return sum;
   }
@@ -82,7 +84,9 @@ class StepElasticity final : public ForcesAround<D, Backend> {
  private:
   void addWallForces(FlowState<D, Backend>& state, const MphPairs<D>& pairs, const ClusterListView& walls,
                      std::span<Vec<D>> force) const override {
-    stressOnWalls<D>(state.context, pairs, walls, carried_.span(), force);
+    couple_.resize(state.context, force.size());
+    clearValues(state.context, couple_.span());
+    stressOnWalls<D>(state.context, pairs, walls, carried_.span(), force, couple_.span());
   }
   /// With the gradient of state.velocity.
   ElasticState<D> elasticState(FlowState<D, Backend>& state, const MphPairs<D>& pairs) {
@@ -104,6 +108,7 @@ class StepElasticity final : public ForcesAround<D, Backend> {
   Buffer<SymmetricBlock<D>, Backend> correction_;  // B
   Buffer<Block<D>, Backend> gradient_;             // [1/s]
   Buffer<Block<D>, Backend> carried_;              // the stress times B, per fluid particle [Pa]
+  mutable Buffer<Vec<3>, Backend> couple_;         // stressOnWalls(), per active wall particle [N/m2]
   std::array<Buffer<SymmetricBlock<D>, Backend>, maxElasticModes> next_;
 };
 

@@ -31,10 +31,11 @@ class IsphWallForces {
     const auto& rows = pairs.fluidOfWalls;
     fillGhosts(state.context, Held::Fluid, stopped_.data());
     force_.resize(state.context, rows.count);
-    const WallForceTerm<D> term{
-        pressure.data(), velocity.data(), stopped_.data(), viscous, rows.first, force_.data(), flow};
+    couple_.resize(state.context, rows.count);
+    const WallForceTerm<D> term{pressure.data(), velocity.data(), stopped_.data(), viscous,
+                                rows.first,      force_.data(),   couple_.data(),  flow};
     sumOnWalls(state.context, pairs, term);
-    return loadsOfBodies<D, Backend>(state, rows.first, pairs.position, state.particles.velocity, force_);
+    return loadsOfBodies<D, Backend>(state, rows.first, pairs.position, state.particles.velocity, force_, couple_);
   }
 
   /// On patches of walls, after loads().
@@ -42,11 +43,12 @@ class IsphWallForces {
     return patchPressures<D, Backend>(state, pairs.fluidOfWalls.first, pairs.position, force_);
   }
 
-  std::size_t bytes() const { return stopped_.bytes() + force_.bytes(); }
+  std::size_t bytes() const { return stopped_.bytes() + force_.bytes() + couple_.bytes(); }
 
  private:
   Buffer<Vec<D>, Backend> stopped_;  // of CorrectorTerm, with ghosts; empty where nobody asks for forces
   Buffer<Vec<D>, Backend> force_;    // per own active wall particle, likewise [N/m3]
+  Buffer<Vec<3>, Backend> couple_;   // likewise [N/m2]
 };
 
 }  // namespace treacle

@@ -48,7 +48,8 @@ class WallForces {
   /// metre of depth.
   std::vector<LoadSums> loads(FlowState<D, Backend>& state, const MphPairs<D>& pairs, std::span<const Vec<D>> u) {
     std::vector<LoadSums> loads = loadsOfBodies<D, Backend>(
-        state, pairs.fluidCount, pairs.position, u, force_.span().first(pairs.ownEnd() - pairs.fluidCount));
+        state, pairs.fluidCount, pairs.position, u, force_.span().first(pairs.ownEnd() - pairs.fluidCount),
+        others_ ? others_->couples() : std::span<const Vec<3>>{});
     if (others_) others_->addLoads(loads);
     return loads;
   }

@@ -15,14 +15,19 @@
 namespace treacle {
 
 /// What each body of the case bears of forces on own active walls, which begin at particle `first` [N/m3]; by all
-/// processes, in 2D per metre of depth. `position`, `velocity`: of all particles. Collective.
+/// processes, in 2D per metre of depth. `position`, `velocity`: of all particles. `couple`: on these walls beside
+/// the forces [N/m2], or empty. Collective.
 template <int D, class Backend>
 std::vector<LoadSums> loadsOfBodies(FlowState<D, Backend>& state, std::uint32_t first,
                                     std::span<const Vec<D>> position, std::span<const Vec<D>> velocity,
-                                    std::span<const Vec<D>> force) {
+                                    std::span<const Vec<D>> force, std::span<const Vec<3>> couple) {
   const std::size_t walls = force.size();
-  const LoadTerms<D> terms{state.particles.body.span().subspan(first, walls), position.subspan(first, walls),
-                           velocity.subspan(first, walls), force};
+  const LoadTerms<D> terms{state.particles.body.span().subspan(first, walls),
+                           position.subspan(first, walls),
+                           velocity.subspan(first, walls),
+                           force,
+                           couple,
+                           state.wallMotion};
   std::vector<LoadSums> loads = sumLoads<D>(state.context, terms, state.theCase.bodies.size());
   const double volume = std::pow(state.theCase.spacing, D);  // [K23 eq. (11)]
   for (LoadSums& load : loads) load = {volume * load.force, volume * load.torque, volume * load.power};

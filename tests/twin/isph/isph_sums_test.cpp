@@ -129,13 +129,19 @@ struct SumsTwin {
 
     const std::uint32_t first = s.pairs.fluidOfWalls.first;
     std::vector<Vec<D>> force(s.pairs.fluidOfWalls.count);
+    std::vector<Vec<3>> couple(force.size());
     Buffer<Vec<D>, Cuda> foundForce(d.context, force.size());
-    sumOnWalls(s.context, s.pairs,
-               WallForceTerm<D>{p.data(), v.data(), stopped.data(), true, first, force.data(), flow.data()});
-    sumOnWalls(d.context, d.pairs,
-               WallForceTerm<D>{pOnDevice.data(), vOnDevice.data(), foundStopped.data(), true, first,
-                                foundForce.data(), foundFlow.data()});
-    expectClose(foundForce, force, "force on walls");
+    Buffer<Vec<3>, Cuda> foundCouple(d.context, force.size());
+    for (const bool isExplicit : {true, false}) {
+      sumOnWalls(s.context, s.pairs,
+                 WallForceTerm<D>{p.data(), v.data(), stopped.data(), true, first, force.data(), couple.data(),
+                                  isExplicit ? flow.data() : nullptr});
+      sumOnWalls(d.context, d.pairs,
+                 WallForceTerm<D>{pOnDevice.data(), vOnDevice.data(), foundStopped.data(), true, first,
+                                  foundForce.data(), foundCouple.data(), isExplicit ? foundFlow.data() : nullptr});
+      expectClose(foundForce, force, "force on walls");
+      expectClose(foundCouple, couple, "couple on walls");
+    }
   }
 
   /// Gas around the free surface, in the corrector of checkPressure(), too, whose results change.

@@ -4,6 +4,7 @@
 #include "support/gpu.hpp"
 #include "support/isph_cases.hpp"
 #include "support/layer_with_gap.hpp"
+#include "support/ring_in_drum.hpp"
 #include "support/scene.hpp"
 #include "support/state_of.hpp"
 #include "support/stretched_body.hpp"
@@ -390,6 +391,35 @@ void compareElasticity(Precision precision, bool warm) {
   std::vector<double> of(expected.fluidCount);
   for (std::uint32_t i = 0; i < expected.fluidCount; ++i) of[expected.id[i]] = expected.temperature[i];
   for (std::uint32_t i = 0; i < found.fluidCount; ++i) ASSERT_NEAR(found.temperature[i], of[found.id[i]], 1e-6);
+}
+
+/// In a drum that turns around a cylinder at rest.
+TEST(SimulationTwin, TurnsElasticFluidLikeTheCpu) {
+  TREACLE_SKIP_WITHOUT_GPU();
+  Case c = ringInDrum();
+  c.solver.tolerance = tightTolerance;
+  c.materials[0].elastic = {
+      {.name = "polymer", .model = ElasticModel::OldroydB, .viscosity = 8, .relaxationTime = 2e-3}};
+  Body cylinder = c.bodies[1];
+  cylinder.name = "cylinder", cylinder.shape.radius = 0.01, cylinder.shape.innerRadius = 0;
+  c.bodies.push_back(cylinder);
+  c.bodies[1].rotation = Rotation{{}, {0, 0, 1}, 10};
+  for (const char* name : {"drum", "cylinder"}) {
+    c.probes.emplace_back();
+    c.probes.back().name = name, c.probes.back().body = name, c.probes.back().kind = ProbeKind::Load;
+  }
+  Simulation<2> cpu(c, created<2>(c));
+  Simulation<2, Cuda> cuda(c, created<2>(c));
+  for (int step = 0; step < 5; ++step) {
+    const StepReport a = cpu.advance(), b = cuda.advance();
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(b.loads[k].torque[2], a.loads[k].torque[2], 1e-6 * std::abs(a.loads[k].torque[2]));
+      EXPECT_NEAR(b.loads[k].power, a.loads[k].power, 1e-6 * std::abs(a.loads[0].power));
+    }
+  }
+  Particles<2> found;
+  cuda.copyParticles(found);
+  EXPECT_LE(farthest(stateOf(cpu), found), agreement * c.spacing);
 }
 
 TEST(SimulationTwin, StepsLikeTheCpuWithElasticFluid) {

@@ -43,6 +43,7 @@ struct Sums {
     for (double& p : pressure) p *= 300;
     for (std::uint32_t i = 0; i < s.particles.count; ++i) acceleration.push_back(accelerationOf(i));
     s.pairs.wallMotion = motion.data();
+    oracle.motion = motion;
   }
 
   /// omega x (omega x d) = (omega.d) omega - omega^2 d

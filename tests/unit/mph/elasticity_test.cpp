@@ -104,7 +104,8 @@ void checkStressOnWalls() {
   ClusterList<Cpu> list;
   buildClusterList<D>(s.context, pairs.grid, s.neighbourhood->ranges(), pairs.position,
                       {n, pairs.ownEnd(), {pairs.terms.viscosityRadius, 0}, true, pairs.side}, list);
-  stressOnWalls<D>(s.context, pairs, list.view(), carried.span(), onWalls.span());
+  Buffer<Vec<3>> couple(walls);
+  stressOnWalls<D>(s.context, pairs, list.view(), carried.span(), onWalls.span(), couple.span());
   for (std::uint32_t j = 0; j < walls; ++j) reaction += onWalls[j];
   EXPECT_GT(norm(sum), 0);
   EXPECT_LT(norm(sum + reaction), 1e-11 * size);

@@ -92,9 +92,6 @@ struct IsphPairs : MaterialParticles<D> {
   std::uint64_t fluidEntries = 0;  // of these rows
   NeighbourRowsView wallsOfFluid;  // WallsOfFluid
   NeighbourRowsView fluidOfWalls;  // FluidOfWalls
-  const std::uint8_t* body = nullptr;
-  const WallSurface<D>* wallSurface = nullptr;  // per active wall particle, as it is placed; null: not known
-  const WallMotion<D>* wallMotion = nullptr;    // per body; none: no wall accelerates
   SmoothingKernel<D> kernel{};
   SurfaceCriterion surface;
   FrameForce<D> frame{};
@@ -143,13 +140,14 @@ struct IsphPairs : MaterialParticles<D> {
     if (!noSlip) return 0;
     if (wallViscosity) return 2 * wallViscosity[fluid];
     if (!(this->pairViscosity(fluid, wall) > 0)) return 0;
-    const bool known = wallSurface && norm2(surfaceOf(wall).face[0]) > 0;
-    return (known ? wallFactor(surfaceOf(wall), d, this->spacing, 0) : 2) * this->pairViscosity(fluid, fluid);
+    const bool known = this->wallSurface && norm2(this->surfaceOf(wall).face[0]) > 0;
+    return (known ? wallFactor(this->surfaceOf(wall), d, this->spacing, 0) : 2) *
+           this->pairViscosity(fluid, fluid);
   }
   /// The part across the wall's surface of d, from a fluid particle to a wall; d where the surface is not known.
   TREACLE_HD Vec<D> across(std::uint32_t wall, const Vec<D>& d) const {
-    if (!wallSurface) return d;
-    const SeenFace<D> face = seenFace(surfaceOf(wall), d);
+    if (!this->wallSurface) return d;
+    const SeenFace<D> face = seenFace(this->surfaceOf(wall), d);
     return face.exists() ? face.across(d) : d;
   }
   /// Distance from a flat wall whose particles are `mean` away in the mean, across the wall; right at half a
@@ -202,14 +200,10 @@ struct IsphPairs : MaterialParticles<D> {
   TREACLE_HD double wallPressure(double p, std::uint32_t fluid, std::uint32_t wall, const Vec<D>& d) const {
     const double density = this->density(fluid);
     Vec<D> force = frame.on(this->position[wall], density);
-    if (wallMotion) force -= density * wallMotion[body[wall]].accelerationAt(this->position[wall]);
+    if (this->wallMotion)
+      force -= density * this->wallMotion[this->body[wall]].accelerationAt(this->position[wall]);
     const double held = p + dot(force, d);
     return negativePressure || held > 0 ? held : 0;
-  }
-
- private:
-  TREACLE_HD const WallSurface<D>& surfaceOf(std::uint32_t wall) const {
-    return wallSurface[wall - this->fluidCount];
   }
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/couple.hpp"
 #include "treacle/core/floored_inverse.hpp"
 #include "treacle/isph/isph_flow.hpp"
 
@@ -110,31 +111,41 @@ struct BothTerms {
 
 /// Force on walls: what viscous forces, pressures and the walls that stop particles take from the momentum of the
 /// fluid in a step. What stops a particle is shared out by slopes and has one direction: walls on two sides of it
-/// are not driven apart. Rows of walls: i is the wall.
+/// are not driven apart. Friction acts at the wall's surface: the couple is that of moving it there. Rows of
+/// walls: i is the wall.
 template <int D>
 struct WallForceTerm {
-  static constexpr int values = D;
+  static constexpr int values = D + planesOf<D>;
   const double* pressure;               // of fluid [Pa]
   const Vec<D>* velocity;               // that the viscous step takes its forces of, of fluid and walls [m/s]
   const Vec<D>* stopped;                // of CorrectorTerm
   bool viscous;                         // there is a viscous step
   std::uint32_t firstWall;              // index of the first one that has a force
   Vec<D>* force;                        // [N/m3]
+  Vec<3>* couple;                       // [N/m2]
   const SmoothFlow<D>* flow = nullptr;  // that of PredictorTerm
 
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
-    const double slope = pairs.slope(r), p = pressure[j];
-    const double push = p + pairs.wallPressure(p, j, i, -1.0 * d), inertia = pairs.density(j) / pairs.timeStep;
-    const double drag = viscous ? 2 * pairs.viscosityAtWall(j, i, -1.0 * d) : 0;
-    const Vec<D> away = push * pairs.renormalised(j, d);
-    for (int k = 0; k < D; ++k)
-      sum[k] += slope * (drag * (velocity[j][k] - velocity[i][k]) - away[k] + inertia * stopped[j][k]);
-    if (!viscous || !flow) return;
-    const Vec<D> stress = transposedForce(pairs.viscosityBetween(j, j), slope, flow[j], flow[j], d);
-    for (int k = 0; k < D; ++k) sum[k] += stress[k];
+    const double slope = pairs.slope(r), p = pressure[j], inertia = pairs.density(j) / pairs.timeStep;
+    const Vec<D> toWall = -1.0 * d;
+    const Vec<D> away = (p + pairs.wallPressure(p, j, i, toWall)) * pairs.renormalised(j, d);
+    for (int k = 0; k < D; ++k) sum[k] += slope * (inertia * stopped[j][k] - away[k]);
+    if (!viscous) return;
+    const double drag = 2 * slope * pairs.viscosityAtWall(j, i, toWall);
+    Vec<D> friction = drag * (velocity[j] - pairs.velocityAtSurface(i, toWall, velocity[i]));
+    if (flow) friction += transposedForce(pairs.viscosityBetween(j, j), slope, flow[j], flow[j], d);
+    for (int k = 0; k < D; ++k) sum[k] += friction[k];
+    const double behind = pairs.wallSurface ? seenFace(pairs.surfaceOf(i), toWall).behind() : 0;
+    addCouple(behind, d, friction, sum + D);
+    if (flow || !pairs.wallMotion) return;
+    // Friction lacks the rest of the stress, mu (grad v)^T, which makes no force on a wall, but a torque on one
+    // that turns: the stress is that of velocities in the frame of the wall.
+    const Vec<D> arm = pairs.wallMotion[pairs.body[i]].arm(pairs.position[i]) + behind * d;
+    addCouple(1.0, arm, drag * pairs.swirl(i, (1 - behind) * toWall), sum + D);
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
+    couple[i - firstWall] = coupleOf<D>(sum + D);
     for (int k = 0; k < D; ++k) force[i - firstWall][k] = sum[k];
   }
 };

@@ -40,9 +40,10 @@ struct EddyTerm {
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     const double slope = pairs.slope(r);
+    const Vec<D> u = pairs.velocityAtSurface(j, d, velocity[j]);
     for (int k = 0; k < D; ++k) {
       sum[Towards + k] += slope * d[k];
-      sum[Wall + k] += slope * velocity[j][k];
+      sum[Wall + k] += slope * u[k];
     }
     sum[Slopes] += slope;
   }

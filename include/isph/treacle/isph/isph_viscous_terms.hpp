@@ -22,7 +22,7 @@ struct PredictorTerm {
   TREACLE_HD void fluid(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                         const Distance& r, double* sum) const {
     const double viscosity = viscous ? pairs.viscosityBetween(i, j) : 0;
-    add(2 * pairs.slope(r) * viscosity, i, j, sum);
+    add(2 * pairs.slope(r) * viscosity, i, velocity[j], sum);
     if (!flow) return;
     const Vec<D> force = hourglassForce(pairs, velocity, flow, i, j, d, r) +
                          transposedForce(viscosity, pairs.slope(r), flow[i], flow[j], d);
@@ -30,14 +30,14 @@ struct PredictorTerm {
   }
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
-    add(2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d), i, j, sum);
+    add(2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d), i, pairs.velocityAtSurface(j, d, velocity[j]), sum);
     if (!flow || !viscous) return;
     const Vec<D> force = transposedForce(pairs.viscosityBetween(i, i), pairs.slope(r), flow[i], flow[i], d);
     for (int k = 0; k < D; ++k) sum[k] += force[k];
   }
-  TREACLE_HD void add(double c, std::uint32_t i, std::uint32_t j, double* sum) const {
+  TREACLE_HD void add(double c, std::uint32_t i, const Vec<D>& other, double* sum) const {
     if (!viscous) return;
-    for (int k = 0; k < D; ++k) sum[k] += c * (velocity[j][k] - velocity[i][k]);
+    for (int k = 0; k < D; ++k) sum[k] += c * (other[k] - velocity[i][k]);
   }
   TREACLE_HD void store(const IsphPairs<D>& pairs, std::uint32_t i, const double* sum) const {
     const double density = pairs.density(i);
@@ -68,7 +68,7 @@ struct ViscousSourceTerm {
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     const double c = 2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d);
-    Vec<D> force = c * velocity[j];
+    Vec<D> force = c * pairs.velocityAtSurface(j, d, velocity[j]);
     if (flow && isNearSurface(pairs, i))
       force += transposedForce(pairs.viscosityBetween(i, i), pairs.slope(r), flow[i], flow[i], d);
     for (int k = 0; k < D; ++k) sum[k] += force[k];
@@ -97,7 +97,8 @@ struct WallFrictionTerm {
   TREACLE_HD void wall(const IsphPairs<D>& pairs, std::uint32_t i, std::uint32_t j, const Vec<D>& d,
                        const Distance& r, double* sum) const {
     const double c = 2 * pairs.slope(r) * pairs.viscosityAtWall(i, j, d);
-    for (int k = 0; k < D; ++k) sum[k] += c * (velocity[j][k] - velocity[i][k]);
+    const Vec<D> u = pairs.velocityAtSurface(j, d, velocity[j]);
+    for (int k = 0; k < D; ++k) sum[k] += c * (u[k] - velocity[i][k]);
   }
   TREACLE_HD void store(const IsphPairs<D>&, std::uint32_t i, const double* sum) const {
     for (int k = 0; k < D; ++k) force[i][k] = sum[k];

@@ -34,10 +34,11 @@ template <int D, class Backend>
 void stressForces(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>> carried,
                   std::span<Vec<D>> force);
 
-/// What walls bear of it, from the first wall particle on [N/m3]. `walls`: their neighbours, as far as the
-/// viscosity acts.
+/// What walls bear of it, from the first wall particle on [N/m3], and the couple of moving these forces to the
+/// walls' surface, where they act [N/m2], which is zero before. `walls`: their neighbours, as far as the viscosity
+/// acts.
 template <int D, class Backend>
 void stressOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView& walls,
-                   std::span<const Block<D>> carried, std::span<Vec<D>> force);
+                   std::span<const Block<D>> carried, std::span<Vec<D>> force, std::span<Vec<3>> couple);
 
 }  // namespace treacle

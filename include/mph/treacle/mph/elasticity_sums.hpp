@@ -1,5 +1,6 @@
 #pragma once
 
+#include "treacle/core/couple.hpp"
 #include "treacle/core/floored_inverse.hpp"
 #include "treacle/core/product.hpp"
 #include "treacle/mph/elasticity.hpp"
@@ -45,8 +46,22 @@ struct VelocityMoment {
     T g = mph.gradient(r);
     if (isWall(segment)) g *= wallFactorOf<true>(pairs, own.at, other.at.index, d);
     for (int i = 0; i < D; ++i) addScaled(sum + i * D, g * (other.u[i] - own.u[i]), d);
+    if (isWall(segment) && pairs.wallMotion && pairs.wallSurface)
+      addTurning(pairs, sum, g, d, own, other.at.index);
   }
   TREACLE_HD void store(const MphPairs<D>&, std::uint32_t i, int n, double sum) const { moment[i].a[n] = sum; }
+
+ private:
+  /// What SortedParticles::velocityAtSurface() says of a wall that turns.
+  template <class T, class O>
+  TREACLE_HD static void addTurning(const MphPairs<D>& pairs, T* sum, T g, const Vec<D, T>& d, const O& own,
+                                    std::uint32_t wall) {
+    const T behind = ofEachPair(own.at, d, [&](std::uint32_t, const Vec<D>& toWall) {
+      return seenFace(pairs.surfaceOf(wall), toWall).behind();
+    });
+    const Vec<D, T> swirl = WallMotion<D>::product(pairs.wallMotion[pairs.body[wall]].spin, d);
+    for (int i = 0; i < D; ++i) addScaled(sum + i * D, -1.0 * g * behind * swirl[i], d);
+  }
 };
 
 /// sum of g (tau_i B_i + tau_j B_j) d.
@@ -81,30 +96,42 @@ struct StressForce {
   }
 };
 
-/// Of a wall particle: sum of 2 g tau_i B_i d over fluid.
+/// Of a wall particle: sum of 2 g tau_i B_i d over fluid, and its couple about the particle.
 template <int D>
 struct StressOnWalls {
-  static constexpr int values = D;
+  static constexpr int values = D + planesOf<D>;
   static constexpr bool uses(ListSegment s) { return isFluid(s); }
 
   ElasticPairTerms<D> mph;
   const Block<D>* carried;
-  Vec<D>* force;  // of the first wall particle
+  Vec<D>* force;   // of the first wall particle
+  Vec<3>* couple;  // likewise
 
   template <class At>
   TREACLE_HD At own(const MphPairs<D>&, const At& at) const {
     return at;
   }
   template <class T, class O>
-  TREACLE_HD void add(const MphPairs<D>&, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O&,
+  TREACLE_HD void add(const MphPairs<D>& pairs, T* sum, const Vec<D, T>& d, const PairDistance<T>& r, const O& own,
                       const OneParticle& other, ListSegment) const {
     const T g = 2.0 * mph.gradient(r);
     const Block<D>& m = carried[other.index];
+    Vec<D, T> f{};
     for (int i = 0; i < D; ++i)
-      for (int k = 0; k < D; ++k) sum[i] += g * m(i, k) * d[k];
+      for (int k = 0; k < D; ++k) f[i] += g * m(i, k) * d[k];
+    for (int i = 0; i < D; ++i) sum[i] += f[i];
+    if (!pairs.wallSurface) return;
+    const T behind = ofEachPair(own, d, [&](std::uint32_t j, const Vec<D>& toFluid) {
+      return seenFace(pairs.surfaceOf(j), -1.0 * toFluid).behind();
+    });
+    addCouple(behind, d, f, sum + D);
   }
   TREACLE_HD void store(const MphPairs<D>& pairs, std::uint32_t j, int n, double sum) const {
-    force[j - pairs.fluidCount][n] = sum;
+    const std::uint32_t wall = j - pairs.fluidCount;
+    if (n < D)
+      force[wall][n] = sum;
+    else
+      couple[wall][D == 2 ? 2 : n - D] = sum;
   }
 };
 
@@ -132,8 +159,9 @@ void stressForces(Context<Backend>& context, const MphPairs<D>& pairs, std::span
 
 template <int D, class Backend>
 void stressOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const ClusterListView& walls,
-                   std::span<const Block<D>> carried, std::span<Vec<D>> force) {
-  sumOnList(context, pairs, walls, StressOnWalls<D>{elasticTerms(pairs), carried.data(), force.data()});
+                   std::span<const Block<D>> carried, std::span<Vec<D>> force, std::span<Vec<3>> couple) {
+  sumOnList(context, pairs, walls,
+            StressOnWalls<D>{elasticTerms(pairs), carried.data(), force.data(), couple.data()});
 }
 
 #define TREACLE_ELASTICITY_SUMS(D, Backend)                                                                    \
@@ -143,6 +171,6 @@ void stressOnWalls(Context<Backend>& context, const MphPairs<D>& pairs, const Cl
   template void stressForces(Context<Backend>&, const MphPairs<D>&, std::span<const Block<D>>,                 \
                              std::span<Vec<D>>);                                                               \
   template void stressOnWalls(Context<Backend>&, const MphPairs<D>&, const ClusterListView&,                   \
-                              std::span<const Block<D>>, std::span<Vec<D>>);
+                              std::span<const Block<D>>, std::span<Vec<D>>, std::span<Vec<3>>);
 
 }  // namespace treacle

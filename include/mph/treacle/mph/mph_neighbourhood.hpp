@@ -50,6 +50,12 @@ class MphNeighbourhood {
   void setWallSurfaces(std::span<const WallSurface<D>> surfaces) {
     pairs_.wallSurface = surfaces.empty() ? nullptr : surfaces.data();
   }
+  /// How walls move in the step, per body, and the body of each particle; must outlive the sums of the step.
+  /// Empty: no wall changes its velocity.
+  void setWallMotion(std::span<const WallMotion<D>> motion, const std::uint8_t* body) {
+    pairs_.wallMotion = motion.empty() ? nullptr : motion.data();
+    pairs_.body = body;
+  }
 
   /// slipSides() of all fluid; must outlive the sums of the step.
   void setSlipSides(std::span<const SlipSide<D>> sides) { pairs_.slipSide = sides.data(); }

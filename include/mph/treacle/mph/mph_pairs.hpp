@@ -39,8 +39,6 @@ struct MphPairs : MaterialParticles<D> {
   double wideScale = 0;       // of sums of MphTerms::openness, to be 1 in a full lattice
   double background = 0;      // pressure of fluid of density n_0 [Pa]
   double tensionLimit = 0;    // elastic pressures are never below minus this [Pa]
-  const WallSurface<D>* wallSurface =
-      nullptr;  // of the first wall particle; null: the fluid meets walls as they are
   const SymmetricBlock<D>* renormalisation = nullptr;  // B per fluid particle (renormalisation.hpp); null: I
   const double* wallShare = nullptr;                   // BulkShare::ofWalls
   const double* viscosityScale = nullptr;              // per fluid particle (viscosity_scale.hpp); null: 1
@@ -110,28 +108,28 @@ struct MphPairs : MaterialParticles<D> {
 
   /// By what the viscosity of fluid particle i with wall particle j is multiplied; d = x_j - x_i [m].
   TREACLE_HD double wallFactor(std::uint32_t i, std::uint32_t j, const Vec<D>& d) const {
-    if (!wallSurface) return 1;
-    return ownShareAtWall(i, j) * treacle::wallFactor(wallSurface[j - this->fluidCount], d, this->spacing,
+    if (!this->wallSurface) return 1;
+    return ownShareAtWall(i, j) * treacle::wallFactor(this->surfaceOf(j), d, this->spacing,
                                                       this->materials.slipLength[this->material[i]]);
   }
   /// The part of it that is not the walls' places: a surface holds each fluid by the viscosity of this fluid,
   /// whatever the wall is made of.
   TREACLE_HD double ownShareAtWall(std::uint32_t i, std::uint32_t j) const {
     const Substance fluid = this->substance(i), wall = this->substance(j);
-    if (!wallSurface || ownViscosities || fluid == wall) return 1;
+    if (!this->wallSurface || ownViscosities || fluid == wall) return 1;
     const double mean = this->viscosity(fluid, wall);
     return mean > 0 ? this->viscosity(fluid, fluid) / mean : 1;
   }
 
   /// Whether some pair may have a part that alongWall() takes out.
-  TREACLE_HD bool slips() const { return smoothWalls && wallSurface; }
+  TREACLE_HD bool slips() const { return smoothWalls && this->wallSurface; }
   /// What does not act of a vector v of fluid particle i and wall particle j, d = x_j - x_i [m], in products with
   /// C and C^T: the part along the wall's surface, where the fluid has a slip length. A wall presses across its
   /// surface, and along it fluid flows freely, but its particles are points, on which fluid that slips would rub
   /// as on a rough plate. Fluid that does not slip stands still there.
   TREACLE_HD Vec<D> alongWall(std::uint32_t i, std::uint32_t j, const Vec<D>& d, const Vec<D>& v) const {
     if (!(this->materials.slipLength[this->material[i]] > 0)) return {};
-    const SeenFace<D> face = seenFace(wallSurface[j - this->fluidCount], d);
+    const SeenFace<D> face = seenFace(this->surfaceOf(j), d);
     if (!face.exists()) return {};
     return slipSide ? slipSide[i].along(v) : v - face.across(v);
   }

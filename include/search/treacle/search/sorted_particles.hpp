@@ -1,7 +1,9 @@
 #pragma once
 
 #include "treacle/core/vec.hpp"
+#include "treacle/model/geometry/seen_face.hpp"
 #include "treacle/model/geometry/side.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/search/cell_grid.hpp"
 #include "treacle/search/cell_sort.hpp"
 
@@ -43,6 +45,10 @@ struct SortedParticles {
   std::span<const Vec<D>> position;              // [m]
   std::span<const std::uint8_t> material;
   const std::uint32_t* side = nullptr;  // per particle, of thin sheets (sides); null: the case has none
+  const WallSurface<D>* wallSurface =
+      nullptr;                         // of the first wall particle; null: the fluid meets walls as they are
+  const std::uint8_t* body = nullptr;  // per particle
+  const WallMotion<D>* wallMotion = nullptr;  // per body; null: no wall changes its velocity
   CellRangesView cells;
   const std::int32_t* owner = nullptr;  // per cell: the process whose it is; null in a simulation that is alone
   CellGrid<D> grid;
@@ -57,6 +63,18 @@ struct SortedParticles {
   /// Whether a thin sheet keeps two particles from acting on each other.
   TREACLE_HD bool areParted(std::uint32_t i, std::uint32_t j) const {
     return side && !sides::seeEachOther(side[i], side[j]);
+  }
+
+  TREACLE_HD const WallSurface<D>& surfaceOf(std::uint32_t wall) const { return wallSurface[wall - fluidCount]; }
+  /// By how much the velocity of a body differs between two places, `way` apart: it turns.
+  TREACLE_HD Vec<D> swirl(std::uint32_t wall, const Vec<D>& way) const {
+    return wallMotion ? wallMotion[body[wall]].swirl(way) : Vec<D>{};
+  }
+  /// The velocity of a wall where d, from a fluid particle to a particle of the wall, crosses its surface; u: that
+  /// of the wall particle.
+  TREACLE_HD Vec<D> velocityAtSurface(std::uint32_t wall, const Vec<D>& d, const Vec<D>& u) const {
+    if (!wallMotion || !wallSurface) return u;
+    return u - swirl(wall, seenFace(surfaceOf(wall), d).behind() * d);
   }
 
   /// The cells' ranges of own particles.

@@ -13,6 +13,8 @@ struct SeenFace {
   double above = 0;  // d_i, distance of i from the plane of the face [m]
 
   TREACLE_HD bool exists() const { return below > 0; }
+  /// The share of the line from i to j that is in the wall, d_j / (d_i + d_j); 0 without a face.
+  TREACLE_HD double behind() const { return exists() ? below / (below + (above > 0 ? above : 0)) : 0; }
   /// The part of v across the face; there must be one.
   TREACLE_HD Vec<D> across(const Vec<D>& v) const { return (dot(way, v) / (below * below)) * way; }
 };

@@ -33,11 +33,13 @@ struct WallMotion {
   }
   /// omega x d
   TREACLE_HD Vec<D> swirl(const Vec<D>& d) const { return product(spin, d); }
-  TREACLE_HD static Vec<D> product(const Vec<3>& w, const Vec<D>& d) {
+  /// w x d
+  template <class T>
+  TREACLE_HD static Vec<D, T> product(const Vec<3>& w, const Vec<D, T>& d) {
     if constexpr (D == 2)
       return {-w[2] * d[1], w[2] * d[0]};
     else
-      return cross(w, d);
+      return {w[1] * d[2] - w[2] * d[1], w[2] * d[0] - w[0] * d[2], w[0] * d[1] - w[1] * d[0]};
   }
 
   /// At x at the start of the step [m/s].

@@ -3,6 +3,7 @@
 #include "treacle/core/cuda.hpp"
 #include "treacle/core/macros.hpp"
 #include "treacle/model/motion/frame_force.hpp"
+#include "treacle/model/motion/wall_motion.hpp"
 #include "treacle/mph/mph_pairs.hpp"
 #include "treacle/mph/surface_tension.hpp"
 #include "treacle/step/method/buoyancy_terms.hpp"
@@ -82,14 +83,19 @@ struct LoadTerms {
   std::span<const std::uint8_t> body;
   std::span<const Vec<D>> position, velocity;  // [m], [m/s]
   std::span<const Vec<D>> force;               // [N/m3]
+  std::span<const Vec<3>> couple;              // [N/m2], or empty
+  std::span<const WallMotion<D>> motion;       // per body; empty: none turns
 
   TREACLE_HD void add(std::size_t i, double* sums) const {
-    const Vec<3> f = resized<3>(force[i]), torque = cross(resized<3>(position[i]), f);
+    const Vec<3> f = resized<3>(force[i]);
+    Vec<3> torque = cross(resized<3>(position[i]), f);
+    if (!couple.empty()) torque += couple[i];
     for (int k = 0; k < 3; ++k) {
       sums[k] += f[k];
       sums[3 + k] += torque[k];
     }
     sums[6] += dot(force[i], velocity[i]);
+    if (!couple.empty() && !motion.empty()) sums[6] += dot(couple[i], motion[body[i]].spin);
   }
 };
 
