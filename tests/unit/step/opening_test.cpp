@@ -26,33 +26,43 @@ TEST(OpeningForce, AddsUpToThePressure) {
   for (int phase = 0; phase < 10; ++phase) {
     Vec<3> sum{};
     for (int layer = 0; layer < 7; ++layer)
-      sum += c.spacing * force.at(force.center - (layer + 0.1 * phase) * c.spacing * force.direction, 1400, {});
+      sum += c.spacing * force.at(force.center - (layer + 0.1 * phase) * c.spacing * force.direction, 1400, {}, 0);
     EXPECT_NEAR(norm(sum - 200.0 * force.direction), 0, 1e-9) << phase;
   }
-  EXPECT_EQ(norm(force.at(force.center + 1e-6 * force.direction, 1400, {0, 0, -9.81})), 0);
+  EXPECT_EQ(norm(force.at(force.center + 1e-6 * force.direction, 1400, {0, 0, -9.81}, 1)), 0);
   const Vec<3> beside = force.center - 2 * c.spacing * force.direction + 5.6e-3 * force.axes[0];
-  EXPECT_EQ(norm(force.at(beside, 1400, {})), 0);
+  EXPECT_EQ(norm(force.at(beside, 1400, {}, 0)), 0);
 }
 
-/// With gravity it is the gradient of a pressure: no work on a closed way, along the hydrostatic pressure at the
-/// face and none at the end.
-TEST(OpeningForce, HoldsWhatIsHydrostatic) {
+/// With a weight it is the gradient of a pressure: no work on a closed way, along the face the pressure at rest,
+/// and none at the end.
+void checkWeight(FrameForce<2> frame) {
   const Case c = channelCase(2);
   const OpeningForce<2> force = OpeningFace<2>(c, c.openings[0]).force(0, 0);
-  const Vec<2> g{0.3, -9.81};
+  frame.openings = {&force, 1};
   const double l = c.spacing, rho = 1400;
   // The pressure that the force and the weight make, from the end of the reserve to the face, at some height.
-  const auto at = [&](double y) {
+  const auto at = [&](double y, auto&& on) {
     double p = 0;
     constexpr int parts = 4000;
-    for (int k = 0; k < parts; ++k) {
-      const Vec<2> x{-(k + 0.5) / parts * 6 * l, y};
-      p += (force.at(x, rho, g)[0] + rho * g[0]) * 6 * l / parts;
-    }
+    for (int k = 0; k < parts; ++k) p += on(Vec<2>{-(k + 0.5) / parts * 6 * l, y})[0] * 6 * l / parts;
     return p;
   };
-  EXPECT_NEAR(at(0), 200, 0.01);
-  EXPECT_NEAR(at(4e-3) - at(-4e-3), rho * g[1] * 8e-3, 0.01);
+  const double expected = rho * (frame.potential({0, -4e-3}) - frame.potential({0, 4e-3}));
+  const auto whole = [&](const Vec<2>& x) { return frame.on(x, rho); };
+  EXPECT_NEAR(at(0, whole), 200, 0.01);
+  EXPECT_NEAR(at(4e-3, whole) - at(-4e-3, whole), expected, 0.01);
+  const auto further = [&](const Vec<2>& x) { return frame.onFurther(x, rho); };
+  EXPECT_NEAR(at(0, further), 0, 0.01);
+  EXPECT_NEAR(at(4e-3, further) - at(-4e-3, further), expected, 0.01);
+}
+
+TEST(OpeningForce, HoldsWhatIsHydrostatic) {
+  FrameForce<2> frame;
+  frame.gravity = {0.3, -9.81};
+  checkWeight(frame);
+  frame.turns = true, frame.center = {0.05, -0.02}, frame.spin = {0, 0, 15};
+  checkWeight(frame);
 }
 
 template <int D>

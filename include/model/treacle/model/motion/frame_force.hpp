@@ -33,8 +33,16 @@ struct FrameForce {
   }
   /// On what has a density [kg/m3] and rests at x [N/m3].
   TREACLE_HD Vec<D> on(const Vec<D>& x, double density) const {
-    Vec<D> force = density * at(x);
-    for (const OpeningForce<D>& opening : openings) force += opening.at(x, density, gravity);
+    const Vec<D> weight = at(x);
+    Vec<D> force = density * weight;
+    for (const OpeningForce<D>& o : openings) force += o.at(x, density, weight, drop(o.center, x));
+    return force;
+  }
+  /// On a density that is there beside it, such as that of warm fluid [N/m3].
+  TREACLE_HD Vec<D> onFurther(const Vec<D>& x, double density) const {
+    const Vec<D> weight = at(x);
+    Vec<D> force = density * weight;
+    for (const OpeningForce<D>& o : openings) force += o.ofWeight(x, density, weight, drop(o.center, x));
     return force;
   }
   /// A velocity after the Coriolis force -2 omega x u of the step, which turns it and takes no energy [m/s].
@@ -49,6 +57,11 @@ struct FrameForce {
   }
 
  private:
+  /// potential(from) - potential(to)
+  TREACLE_HD double drop(const Vec<D>& from, const Vec<D>& to) const {
+    const double fall = dot(gravity, to - from);
+    return turns ? fall + 0.5 * (norm2(product(spin, to - center)) - norm2(product(spin, from - center))) : fall;
+  }
   TREACLE_HD static Vec<D> product(const Vec<3>& w, const Vec<D>& d) {
     if constexpr (D == 2)
       return {-w[2] * d[1], w[2] * d[0]};

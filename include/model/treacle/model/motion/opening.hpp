@@ -16,9 +16,10 @@ namespace treacle {
 /// What an opening does to the fluid in its reserve, behind its face (docs/inflow.md). Over the first layers of
 /// the reserve the pressure shall rise from zero to what is given at the face:
 ///
-///   p(x) = c P,   P = pressure + rho g.(x - center),   f = grad p - rho g = c' P n - (1 - c) rho g
+///   p(x) = c P,   P = pressure + rho (V(center) - V(x)),   f = grad p - rho g = c' P n - (1 - c) rho g
 ///
-/// with the direction n of the face. c' is a trapezoid in the depth, one spacing wide at both ends, so that its
+/// with the direction n of the face, and the potential V of the weight g: gravity, in a frame that turns with the
+/// centrifugal force. c' is a trapezoid in the depth, one spacing wide at both ends, so that its
 /// sum over a lattice is the same wherever the layers stand. Behind it fluid has no weight. Fluid of MPH-I, which
 /// bears tension, pulls a tail of two layers along, on which nothing acts. Fluid of ISPH would leave such a tail
 /// behind, so there the pressure rises over all layers. The friction of walls beside the reserve is made up for,
@@ -65,13 +66,18 @@ struct OpeningForce {
     const double t = behind(x), rest = rises + 1 - t;
     return (t < 1 ? t : rest > 1 ? 1 : rest > 0 ? rest : 0) / (rises * spacing);
   }
-  /// f [N/m3] on fluid of a density [kg/m3] at x; zero outside the reserve.
-  TREACLE_HD Vec<D> at(const Vec<D>& x, double density, const Vec<D>& gravity) const {
+  /// f [N/m3] on fluid of a density [kg/m3] at x, with the weight g there [m/s2] and V(center) - V(x) [m2/s2];
+  /// zero outside the reserve.
+  TREACLE_HD Vec<D> at(const Vec<D>& x, double density, const Vec<D>& weight, double drop) const {
+    if (!isInReserve(x)) return {};
+    return (pressure * rise(x) + drag) * direction + ofWeight(x, density, weight, drop);
+  }
+  /// The part of it that the weight has, for what the weight has beside that of the density, too.
+  TREACLE_HD Vec<D> ofWeight(const Vec<D>& x, double density, const Vec<D>& weight, double drop) const {
     if (!isInReserve(x)) return {};
     const double t = behind(x), rest = rises + 1 - t;
     const double risen = t < 1 ? t * t / 2 : rest > 1 ? t - 0.5 : rest > 0 ? rises - rest * rest / 2 : rises;
-    const double push = (pressure + density * dot(gravity, x - center)) * rise(x);
-    return (push + drag) * direction - (risen / rises * density) * gravity;
+    return density * (drop * rise(x) * direction - risen / rises * weight);
   }
 };
 

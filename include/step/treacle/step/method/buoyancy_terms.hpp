@@ -48,7 +48,7 @@ struct Buoyancy {
   /// Of particle i [N/m3].
   TREACLE_HD Vec<D> on(std::size_t i) const {
     const double T = temperature.empty() ? 0 : temperature[i], v = volume.empty() ? 1 : volume[i];
-    return table.density(material[i], T, v) * frame.at(position[i]);
+    return frame.onFurther(position[i], table.density(material[i], T, v));
   }
 };
 
