@@ -67,7 +67,7 @@ type = "wall"
 material = "syrup"
 shape = "polygon"
 fill = "thin-sheet"
-points = [[7e-3, 8e-3], [10e-3, 8e-3], [10e-3, 8.4e-3], [7e-3, 8.4e-3]]
+points = [[0, 9e-3], [9e-3, 9e-3], [9e-3, 9.4e-3], [0, 9.4e-3]]
 )");
   EXPECT_THAT(shop.call("check thin.toml").out, HasSubstr("a thin solid: 'blade' is the sheet in its middle\n"));
 }

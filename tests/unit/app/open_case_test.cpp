@@ -336,7 +336,7 @@ TEST(OpenCase, ANozzleDoesNotSuck) {
   shop.put("case.toml", pouring);
   const Outcome outcome = shop.call("run case.toml --set 'jet.speed=\"0.2 - 20*t\"' --threads 1");
   EXPECT_EQ(outcome.exitCode, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("jet.speed: expected no negative numbers, found -"));
+  EXPECT_THAT(outcome.err, HasSubstr("speed in [[body]] 'jet' (inflow): expected no negative numbers, found -"));
 }
 
 /// Walls are found whatever number of fluid particles the case would start with; nozzles must stay where they are.
