@@ -130,7 +130,7 @@ void setBulkConstants(Case& c) {
 }
 
 double turningScale(const Case& c) {
-  if (std::ranges::none_of(c.materials, &Material::hasOpenBulk)) return 0;
+  if (c.method.kind != MethodKind::MphI || std::ranges::none_of(c.materials, &Material::hasOpenBulk)) return 0;
   double density = 0;
   for (const Body& body : c.bodies)
     if (body.holdsFluid())
